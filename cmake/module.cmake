@@ -1,0 +1,53 @@
+# How every folder becomes a library, and how the layers are kept.
+
+add_library(sunfleck_options INTERFACE)
+target_compile_options(sunfleck_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion
+  $<$<BOOL:${SUNFLECK_WERROR}>:-Werror>)
+if(SUNFLECK_SANITIZE)
+  target_compile_options(sunfleck_options INTERFACE -fsanitize=${SUNFLECK_SANITIZE} -fno-omit-frame-pointer
+    $<$<CXX_COMPILER_ID:GNU,Clang>:-fno-sanitize-recover=all>)
+  target_link_options(sunfleck_options INTERFACE -fsanitize=${SUNFLECK_SANITIZE})
+endif()
+
+set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ON)  # target all_verify_interface_header_sets compiles each public header alone
+
+# sunfleck_module(HEADERS ... [SOURCES ...] [DEPENDS <folder>...] [LINKS <target>...] [PRIVATE_LINKS <target>...])
+# Makes the calling folder a library: render/gl becomes sunfleck::render_gl. A dependency must stand in a layer below
+# (have been added before), and a file may include only its own folder and those in DEPENDS.
+function(sunfleck_module)
+  cmake_parse_arguments(M "" "" "HEADERS;SOURCES;DEPENDS;LINKS;PRIVATE_LINKS" ${ARGN})
+  file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
+  string(REPLACE "/" "_" name "${folder}")
+  if(M_SOURCES)
+    add_library(sunfleck_${name} STATIC ${M_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(sunfleck_${name} PRIVATE sunfleck_options ${M_PRIVATE_LINKS})
+  else()
+    add_library(sunfleck_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(sunfleck::${name} ALIAS sunfleck_${name})
+  target_sources(sunfleck_${name} ${scope}
+    FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${M_HEADERS})
+  target_link_libraries(sunfleck_${name} ${scope} ${M_LINKS})
+  foreach(dependency IN LISTS M_DEPENDS)
+    string(REPLACE "/" "_" target "sunfleck_${dependency}")
+    if(NOT TARGET ${target})
+      message(FATAL_ERROR "${folder} depends on ${dependency}, which is not a layer below it")
+    endif()
+    target_link_libraries(sunfleck_${name} ${scope} ${target})
+  endforeach()
+
+  file(GLOB files CONFIGURE_DEPENDS *.hpp *.cpp *.glsl *.vert *.frag detail/*)
+  foreach(file IN LISTS files)
+    file(STRINGS "${file}" includes REGEX "^#include \"")
+    foreach(line IN LISTS includes)
+      string(REGEX REPLACE "^#include \"(.*)/[^/]*\".*" "\\1" used "${line}")
+      string(REGEX REPLACE "/detail$" "" used "${used}")
+      if(NOT used STREQUAL folder AND NOT used IN_LIST M_DEPENDS)
+        message(FATAL_ERROR "${file} includes ${used}/, which ${folder} does not declare in DEPENDS")
+      endif()
+    endforeach()
+  endforeach()
+endfunction()

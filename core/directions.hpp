@@ -1,0 +1,27 @@
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+// The convention of all directions, stated here once: a direction is a unit vector along which light TRAVELS. A vector
+// that points back to where light comes from is named so: `to_sun`, `to_eye`. z is up; lengths are metres; angles are
+// radians inside the program and degrees where a person types or reads them.
+namespace sunfleck {
+
+using Direction = glm::vec3;
+
+// Direction in which sunlight travels when the sun stands at `zenith` [rad, 0 = overhead] and `azimuth` [rad, from +x
+// towards +y].
+Direction sunlight(float zenith, float azimuth);
+
+// Right-handed orthonormal axes with `along` as the third: right x up = along. Continuous but at along = (0, 0, -1).
+struct Axes {
+  glm::vec3 right, up, along;
+};
+Axes axesAlong(Direction along);
+
+// `count` > 0 directions spread evenly over the sphere: spherical Fibonacci points (Swinbank & Purser 2006).
+std::vector<Direction> spreadDirections(int count);
+
+}  // namespace sunfleck

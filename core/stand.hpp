@@ -1,0 +1,22 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+namespace sunfleck {
+
+// Where a copy of the prototype tree stands.
+struct Placement {
+  glm::vec3 position{0.f};  // added to the prototype's vertices [m]
+  float rotation = 0.f;     // about the vertical through the prototype's origin, counter-clockwise from above [rad]
+};
+
+// The arrangement of the copies of one prototype. With a period, the whole arrangement repeats without end in x and y.
+struct Stand {
+  std::vector<Placement> trees{Placement{}};  // at least one
+  std::optional<glm::vec2> period;            // side lengths of the repeated rectangle [m], > 0
+};
+
+}  // namespace sunfleck

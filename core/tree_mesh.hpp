@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "core/bounds.hpp"
+
+namespace sunfleck {
+
+// A tree as the simulation sees it: leaves that scatter, wood that blocks. Lengths in metres, z up. Every index is in
+// range, every coordinate finite and every leaf triangle has an area: whoever makes a TreeMesh calls `finish`, and all
+// who read one rely on it.
+struct TreeMesh {
+  std::vector<glm::vec3> vertices;              // position [m]
+  std::vector<glm::uvec3> leaf_triangles;       // corners, as indices of `vertices`
+  std::vector<std::uint32_t> leaf_of_triangle;  // the leaf a leaf triangle is part of, 0 .. leaf_count - 1
+  std::vector<glm::uvec3> wood_triangles;       // corners, as indices of `vertices`
+  std::uint32_t leaf_count = 0;
+};
+
+// What `finish` left out.
+struct Dropped {
+  std::size_t leaf_triangles = 0;  // leaf triangles of no area
+  std::size_t wood_triangles = 0;  // wood triangles of no area
+};
+
+// Makes a mesh safe to use: throws InvalidInput("<source>: ...") on an index out of range, a coordinate that is not
+// finite or beyond 1e6 m, or a mesh without leaves; drops triangles of no area; and tells leaves apart: leaf triangles
+// that share a vertex belong to one leaf.
+Dropped finish(TreeMesh& mesh, const std::string& source);
+
+double triangleArea(const TreeMesh& mesh, const glm::uvec3& triangle);  // [m^2]
+std::vector<double> leafAreas(const TreeMesh& mesh);                    // one-sided area of each leaf [m^2]
+double leafArea(const TreeMesh& mesh);                                  // one-sided area of all leaves [m^2]
+Bounds leafBounds(const TreeMesh& mesh);                                // box of the leaves
+Bounds bounds(const TreeMesh& mesh);                                    // box of leaves and wood
+
+}  // namespace sunfleck

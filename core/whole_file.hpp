@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+namespace sunfleck {
+
+// A file is written whole or not at all: `write` fills a temporary file beside `path` (with the same extension), which
+// then takes the place of `path` in one step. When `write` throws, nothing is left behind. Throws InvalidInput when the
+// place cannot be written.
+void writeWhole(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
+void writeWhole(const std::filesystem::path& path, std::string_view text);
+
+// Throws InvalidInput unless a file could be written at `path`: to be asked before long work, not after it.
+void requireWritable(const std::filesystem::path& path);
+
+}  // namespace sunfleck

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "core/directions.hpp"
+#include "core/tree_mesh.hpp"
+
+namespace sunfleck {
+
+// One place where the line through a pixel's centre crosses a leaf.
+struct Crossing {
+  float depth;         // distance along the map's direction from the map's origin plane [m]
+  std::uint32_t leaf;  // the leaf crossed
+};
+
+// (D3) Deep opacity map (Yuksel & Keyser 2008): an orthographic picture of a tree along one direction that keeps, for
+// every pixel, all leaf crossings in order, so that depths are exact in count, and the first wood, behind which no
+// direct light comes. Immutable after it is made.
+class DeepOpacityMap {
+ public:
+  // `resolution` >= 1: pixels along the longer side. Pixels are square and cover the leaves and the wood.
+  DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution);
+
+  Direction along() const { return axes_.along; }
+  const Axes& axes() const { return axes_; }
+  glm::vec2 corner() const { return corner_; }     // (right, up) coordinates of pixel (0, 0)'s outer corner [m]
+  float pixelSize() const { return pixel_size_; }  // side of a pixel [m]
+  glm::ivec2 size() const { return size_; }        // [pixel]
+
+  // All crossings, pixel by pixel, sorted by depth: those of pixel (x, y) are [first[i], first[i + 1]), i = y * width +
+  // x.
+  std::span<const std::uint32_t> first() const { return first_; }
+  std::span<const Crossing> crossings() const { return crossings_; }
+  std::span<const Crossing> crossings(int x, int y) const;
+  // Depth of the first wood in each pixel [m]; infinity where there is none.
+  std::span<const float> woodDepth() const { return wood_depth_; }
+
+  // (right, up, depth) of a point in the map [m].
+  glm::vec3 inMap(glm::vec3 point) const;
+  // The point at the centre of a pixel and a depth.
+  glm::vec3 inSpace(int x, int y, float depth) const;
+
+  // Leaf crossings on the line through the pixel that `point` falls in: n+, between the light and the point, and n-,
+  // beyond it. Leaf `own` is not counted. Points beside the map meet no leaf.
+  static constexpr std::uint32_t kNoLeaf = ~0u;
+  struct Counts {
+    int before = 0;  // n+
+    int beyond = 0;  // n-
+  };
+  Counts counts(glm::vec3 point, std::uint32_t own = kNoLeaf) const;
+
+ private:
+  Axes axes_;
+  glm::vec2 corner_{0.f};
+  float pixel_size_ = 0.f;
+  glm::ivec2 size_{0};
+  std::vector<std::uint32_t> first_;
+  std::vector<Crossing> crossings_;
+  std::vector<float> wood_depth_;
+};
+
+// The maps of one tree along each direction, in parallel.
+std::vector<DeepOpacityMap> deepOpacityMaps(const TreeMesh& mesh, std::span<const Direction> directions,
+                                            int resolution);
+
+}  // namespace sunfleck

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/image.hpp"
+#include "render/reference/forward_trace.hpp"
+
+namespace sunfleck {
+
+// An orthographic picture's rays: pixel (x, y) of width * height spans `corner + x * right_step + y * down_step` and
+// the steps; all rays travel along `sight`.
+struct PixelRays {
+  glm::vec3 corner{0.f}, right_step{0.f}, down_step{0.f};  // [m]
+  Direction sight{0.f, 0.f, -1.f};
+  int width = 0, height = 0;
+};
+
+struct CameraResult {
+  Image radiance;        // channel "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr]
+  Image standard_error;  // channel "Y": of the radiance of each pixel
+  Estimate mean;         // of all pixels
+  std::uint64_t paths = 0;
+  double seconds = 0., cpu_seconds = 0.;
+};
+
+// (R2) Monte Carlo from the camera to the sun, with the sun sampled at every hit. `effort.paths` is rounded up to whole
+// samples per pixel. A ground plane (albedo > 0) lies at `ground_height`.
+CameraResult traceCamera(const RayScene& scene, const TraceLight& light, const PixelRays& rays, float ground_height,
+                         const TraceEffort& effort, const Progress& progress = {});
+
+}  // namespace sunfleck

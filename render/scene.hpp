@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/directions.hpp"
+#include "core/leaf_optics.hpp"
+#include "core/stand.hpp"
+#include "core/tree_mesh.hpp"
+
+namespace sunfleck {
+
+// An orthographic camera that looks at a point.
+struct Camera {
+  glm::vec3 target{0.f};          // point in the middle of the picture [m]
+  float elevation = 0.f;          // of the camera as seen from the target [rad], -pi/2 .. pi/2
+  float azimuth = 0.f;            // of the camera as seen from the target, from +x towards +y [rad]
+  float half_width = 1.f;         // half of the picture's width in the scene [m], > 0
+  int width = 512, height = 512;  // [pixel], > 0
+};
+
+// Red, green and blue: the bands a picture is made in.
+inline constexpr int kBands = 3;
+
+// What is simulated: one prototype tree, its copies, the optics and the sun.
+struct Scene {
+  std::string name;
+  std::string source;  // what the leaves came from: a file or a species with its seed
+  std::shared_ptr<const TreeMesh> tree;
+  Stand stand;
+  std::array<LeafOptics, kBands> leaf;  // per band
+  glm::vec3 wood_reflectance{0.3f};     // Lambertian, per band [1], 0 .. 1
+  glm::vec3 ground_albedo{0.f};         // Lambertian, per band [1], 0 .. 1
+  float sun_zenith = 0.f;               // [rad], 0 .. below pi/2
+  float sun_azimuth = 0.f;              // where the sun stands, from +x towards +y [rad]
+  std::optional<Camera> camera;         // none: one that shows the whole stand
+
+  Direction sun() const { return sunlight(sun_zenith, sun_azimuth); }
+};
+
+Bounds bounds(const Scene& scene);    // of all trees of the stand [m]
+Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
+Axes viewAxes(const Camera& camera);  // right and up of the picture, and the direction of sight
+
+}  // namespace sunfleck

@@ -1,0 +1,104 @@
+// Closed forms of light in a plane-parallel slab of leaves, and their compensation for the edge of a crown. This text is
+// C++ and GLSL: values in, a value or a struct out; literals with f; no sampling, no globals. The equations stand in
+// docs/EQUATIONS.md.
+//
+// The slab's optical depth counts leaf crossings along its normal, from 0 at the lit face to `thickness` at the other.
+// F, the power that arrives through a plane facing the light, is 1.
+//   depth          z      optical depth of the place below the lit face                        [1], 0 .. thickness
+//   thickness      w      optical thickness of the slab; 1e7 and more stand for infinite       [1], > 0
+//   mu0                   |cos| of the light's direction to the slab's normal                  [1], (0, 1]
+//   albedo         omega  share of the light that meets a leaf and is scattered                [1], 0 .. 1
+//   forward_share  T      share of the scattered light that goes on into the forward half      [1], 0 .. 1
+
+// (1 - e^-x) / x, which is 1 at x = 0; x >= 0.
+SHARED_FN Number decayMean(Number x) {
+  return x > Number(0.0f) ? -expm1(-x) / x : Number(1.0f);
+}
+
+struct SlabPowers {
+  Number down;  // P+: radiance integrated over the forward half of the sphere, direct light included  [1], 0 .. F + ...
+  Number up;    // P-: radiance integrated over the backward half                                      [1]
+};
+
+// (S1) SS: light that met no leaf. Beer and Lambert's law along the slanted path.
+SHARED_FN Number directPower(Number depth, Number mu0) {
+  return exp(-depth / mu0);
+}
+
+// (S2) SPP, Shinya et al. 2013 Eqs. 11 to 22 in a form whose every exponent is negative and that has no pole at
+// albedo 1, where its exponent k is 0.
+SHARED_FN SlabPowers sppPowers(Number depth, Number thickness, Number mu0, Number albedo, Number forward_share) {
+  Number backward_share = Number(1.0f) - forward_share;
+  Number w = min(thickness, Number(1.0e7f));
+  Number z = min(depth, w);
+  Number lost = Number(1.0f) - albedo;
+  Number gamma = lost + albedo * backward_share;  // 1 - omega T
+  Number k = sqrt((lost + Number(2.0f) * albedo * backward_share) * lost) / mu0;
+  // sh(x) = (1 - e^-2kx) / 2k and ch(x) = (1 + e^-2kx) / 2: sinh and cosh without their growing factor.
+  Number rest = w - z;
+  Number sh_w = w * decayMean(Number(2.0f) * k * w);
+  Number sh_rest = rest * decayMean(Number(2.0f) * k * rest);
+  Number ch_w = Number(0.5f) * (Number(1.0f) + exp(Number(-2.0f) * k * w));
+  Number ch_rest = Number(0.5f) * (Number(1.0f) + exp(Number(-2.0f) * k * rest));
+  Number scale = exp(-k * z) / (mu0 * ch_w + gamma * sh_w);
+  SlabPowers powers;
+  powers.down = scale * (mu0 * ch_rest + gamma * sh_rest);
+  powers.up = scale * albedo * backward_share * sh_rest;
+  return powers;
+}
+
+// (S3) Diffuse radiance of SPP, the same for all directions of a half: forward half, then backward half  [1/sr].
+SHARED_FN SlabPowers sppDiffuseRadiance(SlabPowers powers, Number direct) {
+  Number per_steradian = Number(0.15915494309189535f);  // 1 / 2 pi
+  SlabPowers radiance;
+  radiance.down = max(powers.down - direct, Number(0.0f)) * per_steradian;
+  radiance.up = powers.up * per_steradian;
+  return radiance;
+}
+
+// (S4) Irradiance of a leaf, both sides together, per one-sided area: direct light on its projection, and half of what
+// passes each way, because a leaf of any orientation gathers a half-sphere's uniform radiance alike.
+SHARED_FN Number leafIrradiance(Number projection, Number direct, SlabPowers powers) {
+  return projection * direct + Number(0.5f) * (max(powers.down - direct, Number(0.0f)) + powers.up);
+}
+
+// (S5) G_s of Shinya et al. 2013 Eqs. 24 to 26: the share of the slab's light in one direction that the real crown
+// cannot send, because its edge lies nearer than the slab's face. With L the way to the slab's face and h that to the
+// edge, G_s = (J(L) - J(min(h, L))) / J(L), J(x) = integral of e^-al over 0 .. x, a = 1 - cosine / mu0; written so that
+// a may be zero, negative or huge.
+//   cosine  between the sample direction, away from the place, and the direction back to the light's plane  [1]
+//   edge    h: optical distance to the edge of the foliage in that direction                                [1], >= 0
+SHARED_FN Number shareBeyondEdge(Number cosine, Number edge, Number depth, Number thickness, Number mu0) {
+  Number w = min(thickness, Number(1.0e7f));
+  Number normal_way = cosine > Number(0.0f) ? min(depth, w) : max(w - depth, Number(0.0f));
+  Number face = min(normal_way / max(abs(cosine), Number(1.0e-7f)), Number(1.0e7f));
+  if (edge >= face) return Number(0.0f);
+  Number a = Number(1.0f) - cosine / mu0;
+  Number beyond = face - edge;
+  return exp(-max(a, Number(0.0f)) * edge) * (beyond / face) * decayMean(abs(a) * beyond) /
+         decayMean(abs(a) * face);
+}
+
+// (S6) SPPG, Eq. 28: the slab's light where the crown is like a slab (G = 1), direct light alone where it is not (G = 0).
+SHARED_FN SlabPowers compensated(SlabPowers powers, Number direct, Number compensation) {
+  SlabPowers result;
+  result.down = direct + compensation * (powers.down - direct);
+  result.up = compensation * powers.up;
+  return result;
+}
+
+// (S7) Radiance that leaves a leaf towards the eye, lit by direct light and by the two diffuse half-spheres  [1/sr].
+//   to_light_cosine   between the leaf's normal on the eye's side and the direction back to the light      [1], -1 .. 1
+//   visible_direct    direct light that reaches the leaf: 1 in full light                                  [1]
+//   slant_cosine      between that normal and the slab's upward normal                                     [1], -1 .. 1
+//   diffuse           powers without the direct light
+SHARED_FN Number leafRadiance(Number to_light_cosine, Number visible_direct, Number slant_cosine, SlabPowers diffuse,
+                              Number reflectance, Number transmittance) {
+  Number same_side = max(to_light_cosine, Number(0.0f)) * visible_direct +
+                     Number(0.25f) * (diffuse.down * (Number(1.0f) + slant_cosine) +
+                                      diffuse.up * (Number(1.0f) - slant_cosine));
+  Number other_side = max(-to_light_cosine, Number(0.0f)) * visible_direct +
+                      Number(0.25f) * (diffuse.down * (Number(1.0f) - slant_cosine) +
+                                       diffuse.up * (Number(1.0f) + slant_cosine));
+  return Number(0.31830988618379067f) * (reflectance * same_side + transmittance * other_side);
+}

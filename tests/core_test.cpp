@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <numbers>
+
+#include "core/directions.hpp"
+#include "core/leaf_optics.hpp"
+#include "core/random.hpp"
+#include "core/require.hpp"
+#include "core/tree_mesh.hpp"
+#include "core/whole_file.hpp"
+
+using namespace sunfleck;
+namespace fs = std::filesystem;
+
+// Check that sunlight travels down from overhead, and away from the side where the sun stands.
+TEST(Directions, SunlightTravelsAwayFromTheSun) {
+  EXPECT_NEAR(sunlight(0.f, 0.f).z, -1.f, 1e-7f);
+  const Direction low = sunlight(0.5f * std::numbers::pi_v<float>, 0.f);  // sun on the horizon in +x
+  EXPECT_NEAR(low.x, -1.f, 1e-6f);
+  EXPECT_NEAR(low.z, 0.f, 1e-6f);
+}
+
+// Check that axes are orthonormal and right-handed along any direction, the poles included. Error: a few ulp.
+TEST(Directions, AxesAreOrthonormal) {
+  std::vector<Direction> directions = spreadDirections(100);
+  directions.push_back({0.f, 0.f, 1.f});
+  directions.push_back({0.f, 0.f, -1.f});
+  for (const Direction& along : directions) {
+    const Axes axes = axesAlong(along);
+    EXPECT_NEAR(glm::dot(axes.right, axes.up), 0.f, 4e-7f);
+    EXPECT_NEAR(glm::length(axes.right), 1.f, 4e-7f);
+    EXPECT_NEAR(glm::length(glm::cross(axes.right, axes.up) - along), 0.f, 8e-7f);
+  }
+}
+
+// Check that spread directions integrate the second moments of the sphere: mean x_i x_j = delta_ij / 3. The bound is
+// 2 / count: the error of spherical Fibonacci points for such smooth functions falls faster than 1 / count.
+TEST(Directions, SpreadDirectionsHaveIsotropicMoments) {
+  for (int count : {16, 22, 48, 200}) {
+    glm::dmat3 moments(0.);
+    for (const glm::dvec3 s : spreadDirections(count)) moments += glm::outerProduct(s, s) / double(count);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(moments[i][j], i == j ? 1. / 3. : 0., 2. / count) << count;
+  }
+}
+
+TEST(LeafOptics, RefusesSharesThatMakeLight) {
+  EXPECT_NO_THROW(validate(LeafOptics{.reflectance = 0.6f, .transmittance = 0.4f}));
+  for (const LeafOptics bad : {LeafOptics{-0.1f, 0.f}, LeafOptics{0.7f, 0.7f}, LeafOptics{std::nanf(""), 0.f}})
+    EXPECT_THROW(validate(bad), InvalidInput);
+}
+
+// Check that streams differ, repeat, and are uniform: mean of n uniform numbers is 1/2 with standard error
+// 1 / sqrt(12 n); 5 of them is a false alarm of 6e-7.
+TEST(Random, StreamsAreReproducibleAndUniform) {
+  EXPECT_EQ(Random(1, 2).bits(), Random(1, 2).bits());
+  EXPECT_NE(Random(1, 2).bits(), Random(1, 3).bits());
+  EXPECT_NE(Random(1, 2).bits(), Random(2, 2).bits());
+  Random random(7, 0);
+  constexpr int n = 1'000'000;
+  double sum = 0.;
+  for (int i = 0; i < n; ++i) {
+    const float x = random.uniform();
+    ASSERT_GE(x, 0.f);
+    ASSERT_LT(x, 1.f);
+    sum += double{x};
+  }
+  EXPECT_NEAR(sum / n, 0.5, 5. / std::sqrt(12. * n));
+}
+
+namespace {
+
+// Two squares that share no vertex, one triangle of no area, and a wood triangle.
+TreeMesh twoLeaves() {
+  TreeMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}};
+  mesh.leaf_triangles = {{0, 1, 2}, {4, 5, 6}, {0, 0, 1}, {0, 2, 3}, {4, 6, 7}};
+  mesh.wood_triangles = {{0, 1, 4}};
+  return mesh;
+}
+
+}  // namespace
+
+// Check that leaves are told apart by shared vertices, whatever the order of their triangles, and that areas are exact.
+TEST(TreeMesh, FinishGroupsLeavesAndDropsFlatTriangles) {
+  TreeMesh mesh = twoLeaves();
+  const Dropped dropped = finish(mesh, "test");
+  EXPECT_EQ(dropped.leaf_triangles, 1u);
+  EXPECT_EQ(mesh.leaf_count, 2u);
+  EXPECT_EQ(mesh.leaf_of_triangle, (std::vector<std::uint32_t>{0, 1, 0, 1}));
+  EXPECT_DOUBLE_EQ(leafAreas(mesh)[0], 1.);
+  EXPECT_DOUBLE_EQ(leafAreas(mesh)[1], 4.);
+  EXPECT_DOUBLE_EQ(leafArea(mesh), 5.);
+}
+
+TEST(TreeMesh, FinishRefusesBrokenMeshes) {
+  TreeMesh out_of_range = twoLeaves();
+  out_of_range.leaf_triangles.push_back({0, 1, 99});
+  EXPECT_THROW(finish(out_of_range, "test"), InvalidInput);
+
+  TreeMesh not_finite = twoLeaves();
+  not_finite.vertices[3].y = std::numeric_limits<float>::quiet_NaN();
+  try {
+    finish(not_finite, "tree.obj");
+    FAIL() << "a NaN went through";
+  } catch (const InvalidInput& e) {
+    EXPECT_EQ(std::string(e.what()),
+              "tree.obj: vertex 4 y = nan: must be a finite number of metres, at most 1e6 in size");
+  }
+
+  TreeMesh only_wood = twoLeaves();
+  only_wood.leaf_triangles.clear();
+  EXPECT_THROW(finish(only_wood, "test"), InvalidInput);
+}
+
+// Check that a file appears whole, and that a writer that fails leaves neither a file nor its temporary.
+TEST(WholeFile, IsWrittenWholeOrNotAtAll) {
+  const fs::path folder = fs::temp_directory_path() / ("sunfleck_whole_file_" + std::to_string(::getpid()));
+  fs::create_directory(folder);
+  writeWhole(folder / "a.txt", "content");
+  std::ifstream in(folder / "a.txt");
+  std::string read;
+  in >> read;
+  EXPECT_EQ(read, "content");
+  EXPECT_THROW(writeWhole(folder / "b.txt",
+                          [](const fs::path& temporary) {
+                            std::ofstream(temporary) << "half";
+                            throw std::runtime_error("disk on fire");
+                          }),
+               std::runtime_error);
+  EXPECT_THROW(writeWhole(folder / "none" / "c.txt", "x"), InvalidInput);
+  EXPECT_THROW(requireWritable(folder), InvalidInput);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}), 1);
+  fs::remove_all(folder);
+}

@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "spp/forward_share.hpp"
+#include "spp/slab.hpp"
+
+namespace {
+
+using namespace sunfleck;
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+
+// (S1) Check Beer and Lambert's law on a slanted path. Error: one rounding of exp.
+TEST(S1_DirectPower, FallsAlongTheSlantedPath) {
+  EXPECT_FLOAT_EQ(spp::directPower(2.f, 0.5f), std::exp(-4.f));
+  EXPECT_EQ(spp::directPower(0.f, 1e-4f), 1.f);
+}
+
+// (S2) Check both differential equations of METHOD section 2, mu0 P+' = -P+ + omega (T P+ + R P-) and
+// -mu0 P-' = -P- + omega (R P+ + T P-), by a central difference in double. With step h its error is h^2/6 |P'''| plus
+// rounding/h; h = 1e-4 mu0 makes both below 2e-7 of P, since |P'''| <= (1/mu0)^3 P.
+TEST(S2_SppPowers, SatisfiesItsEquations) {
+  for (double omega : {0.5, 0.9, 0.99, 1. - 1e-6, 1. - 1e-14, 1.})
+    for (double T : {0.2, 0.5, 0.9, 1.})
+      for (double mu0 : {0.05, 0.3, 1.})
+        for (double w : {0.5, 5., 50.})
+          for (double part : {0.1, 0.5, 0.9}) {
+            const double z = part * w, h = 1e-4 * mu0, R = 1. - T;
+            const auto p = spp::precise::sppPowers(z, w, mu0, omega, T);
+            const auto below = spp::precise::sppPowers(z + h, w, mu0, omega, T);
+            const auto above = spp::precise::sppPowers(z - h, w, mu0, omega, T);
+            const double down = mu0 * (below.down - above.down) / (2. * h);
+            const double up = -mu0 * (below.up - above.up) / (2. * h);
+            const double scale = p.down + p.up;
+            EXPECT_NEAR(down, -p.down + omega * (T * p.down + R * p.up), 2e-7 * scale)
+                << "omega " << omega << " T " << T << " mu0 " << mu0 << " w " << w << " z " << z;
+            EXPECT_NEAR(up, -p.up + omega * (R * p.down + T * p.up), 2e-7 * scale)
+                << "omega " << omega << " T " << T << " mu0 " << mu0 << " w " << w << " z " << z;
+          }
+}
+
+// (S2) Check the boundary conditions: P+(0) = F = 1 and P-(w) = 0. Error: rounding.
+TEST(S2_SppPowers, MeetsItsBoundaries) {
+  for (float omega : {0.f, 0.5f, 0.95f, 1.f})
+    for (float mu0 : {0.01f, 0.5f, 1.f})
+      for (float w : {1e-8f, 0.1f, 3.f, 1e6f}) {
+        EXPECT_NEAR(spp::sppPowers(0.f, w, mu0, omega, 0.5f).down, 1.f, 2e-6f);
+        EXPECT_EQ(spp::sppPowers(w, w, mu0, omega, 0.5f).up, 0.f);
+      }
+}
+
+// (S2) Check that a slab which absorbs nothing gives all light back: R + T = 1. Error: a few roundings.
+TEST(S2_SppPowers, ConservesEnergyAtAlbedoOne) {
+  for (float w : {1e-4f, 0.1f, 1.f, 10.f, 1e5f, kInfinite})
+    for (float mu0 : {0.05f, 0.5f, 1.f}) {
+      const float reflected = spp::sppPowers(0.f, w, mu0, 1.f, 0.5f).up;
+      const float transmitted = spp::sppPowers(w, w, mu0, 1.f, 0.5f).down;
+      EXPECT_NEAR(reflected + transmitted, 1.f, 2e-6f) << "w " << w << " mu0 " << mu0;
+    }
+}
+
+// (S2) Check black leaves: nothing but direct light. Error: rounding of an exponent up to 20, 20 ulp.
+TEST(S2_SppPowers, IsDirectLightForBlackLeaves) {
+  for (float z : {0.f, 1.f, 5.f, 20.f}) {
+    const auto p = spp::sppPowers(z, 20.f, 1.f, 0.f, 0.5f);
+    EXPECT_NEAR(p.down, spp::directPower(z, 1.f), 2e-6f * spp::directPower(z, 1.f) + 1e-9f);
+    EXPECT_EQ(p.up, 0.f);
+  }
+}
+
+// (S2) Check single against double precision over the corners where other forms overflow or divide by zero, as absolute
+// error of F = 1. The bound 4e-6 is the rounding of k^2 near albedo 1 seen through thick slabs.
+TEST(S2_SppPowers, SinglePrecisionHoldsInTheCorners) {
+  for (float omega : {0.f, 0.5f, 0.95f, 0.9999f, 1.f - 6e-8f, 1.f})
+    for (float mu0 : {1e-4f, 0.01f, 0.3f, 1.f})
+      for (float w : {1e-8f, 1e-3f, 1.f, 100.f, 1e6f, 1e9f, kInfinite})
+        for (float part : {0.f, 0.3f, 1.f}) {
+          const float z = part == 0.f ? 0.f : part * std::min(w, 1e7f);
+          const auto single = spp::sppPowers(z, w, mu0, omega, 0.5f);
+          const auto exact = spp::precise::sppPowers(double{z}, double{w}, double{mu0}, double{omega}, 0.5);
+          ASSERT_TRUE(std::isfinite(single.down) && std::isfinite(single.up))
+              << "omega " << omega << " mu0 " << mu0 << " w " << w << " z " << z;
+          EXPECT_NEAR(single.down, exact.down, 4e-6) << "omega " << omega << " mu0 " << mu0 << " w " << w << " z " << z;
+          EXPECT_NEAR(single.up, exact.up, 4e-6) << "omega " << omega << " mu0 " << mu0 << " w " << w << " z " << z;
+        }
+}
+
+// (S3) Check that the diffuse radiance, integrated over each half, is the power again less the direct light.
+TEST(S3_SppDiffuseRadiance, IntegratesToThePowers) {
+  const auto p = spp::sppPowers(1.f, 4.f, 1.f, 0.95f, 0.5f);
+  const float direct = spp::directPower(1.f, 1.f);
+  const auto radiance = spp::sppDiffuseRadiance(p, direct);
+  const float half_sphere = 2.f * std::numbers::pi_v<float>;
+  EXPECT_NEAR(radiance.down * half_sphere, p.down - direct, 1e-6f);
+  EXPECT_NEAR(radiance.up * half_sphere, p.up, 1e-6f);
+}
+
+// (S4) Check a leaf in a furnace: radiance 1/2pi from all around, so powers 1 and 1, gives irradiance pi/2pi on each
+// of two sides, 1 together; and direct light alone counts by projection.
+TEST(S4_LeafIrradiance, OfUniformAndOfDirectLight) {
+  EXPECT_FLOAT_EQ(spp::leafIrradiance(0.7f, 0.f, {.down = 1.f, .up = 1.f}), 1.f);
+  EXPECT_FLOAT_EQ(spp::leafIrradiance(0.7f, 0.3f, {.down = 0.3f, .up = 0.f}), 0.21f);
+}
+
+// (S5) Check G_s against its definition, by Simpson's rule in double with 4,000 steps (error below 1e-9 for |a| L <=
+// 40).
+TEST(S5_ShareBeyondEdge, IsTheQuotientOfItsIntegrals) {
+  const auto integral = [](double a, double x) {
+    const int n = 4000;
+    double sum = 1. + std::exp(-a * x);
+    for (int i = 1; i < n; ++i) sum += (i % 2 ? 4. : 2.) * std::exp(-a * x * i / n);
+    return sum * x / (3. * n);
+  };
+  for (double mu0 : {0.4, 1.})
+    for (double c : {-1., -0.6, -0.1, 0.1, 0.399999, 0.4, 0.7, 1.})
+      for (double depth : {0.2, 2.})
+        for (double h : {0., 1e-6, 0.3, 1.7, 9.}) {
+          const double w = 3.;
+          const double face = c > 0. ? depth / c : (w - depth) / -c;
+          const double a = 1. - c / mu0;
+          const double expected = (integral(a, face) - integral(a, std::min(h, face))) / integral(a, face);
+          EXPECT_NEAR(spp::precise::shareBeyondEdge(c, h, depth, w, mu0), expected, 1e-8)
+              << c << " " << depth << " " << h;
+          EXPECT_NEAR(double{spp::shareBeyondEdge(float(c), float(h), float(depth), float(w), float(mu0))}, expected,
+                      3e-6)
+              << c << " " << depth << " " << h;
+        }
+}
+
+// (S5) Check the corners: a = 0, horizontal directions, no depth, infinite slabs, huge edges: finite and in [0, 1].
+TEST(S5_ShareBeyondEdge, StaysAShareInTheCorners) {
+  for (float mu0 : {1e-4f, 0.5f, 1.f})
+    for (float c : {-1.f, -1e-9f, 0.f, 1e-9f, 0.5f, 1.f})
+      for (float depth : {0.f, 1e-20f, 1.f, 1e6f})
+        for (float w : {1e-20f, 1.f, 1e9f, kInfinite})
+          for (float h : {0.f, 1e-20f, 1.f, 1e9f, kInfinite}) {
+            const float share = spp::shareBeyondEdge(c, h, depth, w, mu0);
+            ASSERT_TRUE(share >= 0.f && share <= 1.f + 1e-6f)
+                << share << ": " << c << " " << h << " " << depth << " " << w;
+          }
+}
+
+// (S6) Check both ends of Eq. 28.
+TEST(S6_Compensated, IsTheSlabOrDirectLight) {
+  const spp::SlabPowers slab{.down = 0.8f, .up = 0.4f};
+  EXPECT_FLOAT_EQ(spp::compensated(slab, 0.3f, 1.f).down, 0.8f);
+  EXPECT_FLOAT_EQ(spp::compensated(slab, 0.3f, 0.f).down, 0.3f);
+  EXPECT_EQ(spp::compensated(slab, 0.3f, 0.f).up, 0.f);
+}
+
+// (S7) Check that a leaf sends out, over both sides, albedo times what arrives: pi (L front + L back) = omega E.
+TEST(S7_LeafRadiance, SendsOutWhatItDoesNotAbsorb) {
+  const spp::SlabPowers diffuse{.down = 0.5f, .up = 0.2f};
+  for (float to_light : {-1.f, -0.3f, 0.6f})
+    for (float slant : {-0.8f, 0.f, 1.f}) {
+      const float front = spp::leafRadiance(to_light, 0.7f, slant, diffuse, 0.5f, 0.4f);
+      const float back = spp::leafRadiance(-to_light, 0.7f, -slant, diffuse, 0.5f, 0.4f);
+      const spp::SlabPowers total{.down = diffuse.down + 0.7f, .up = diffuse.up};
+      const float arriving = spp::leafIrradiance(std::abs(to_light), 0.7f, total);
+      EXPECT_NEAR(std::numbers::pi_v<float> * (front + back), 0.9f * arriving, 1e-6f);
+    }
+}
+
+// (S8) Check known values: isotropic 1/2; normal incidence (1-g^2)/2g (1/(1-g) - 1/sqrt(1+g^2)); grazing 1/2 by
+// symmetry; and reversal of g swaps the halves. Error: the quadrature's 1e-10.
+TEST(S8_ForwardShare, MeetsItsClosedForms) {
+  for (double mu0 : {1e-4, 0.3, 1.}) EXPECT_NEAR(spp::forwardShare(0., mu0), 0.5, 1e-10);
+  for (double g : {-0.99, -0.5, 0.3, 0.85, 0.99}) {
+    const double normal = (1. - g * g) / (2. * g) * (1. / (1. - g) - 1. / std::sqrt(1. + g * g));
+    EXPECT_NEAR(spp::forwardShare(g, 1.), normal, 1e-10);
+    for (double mu0 : {1e-9, 0.01, 0.4, 0.99})
+      EXPECT_NEAR(spp::forwardShare(g, mu0) + spp::forwardShare(-g, mu0), 1., 1e-9) << g << " " << mu0;
+    EXPECT_NEAR(spp::forwardShare(g, 1e-9), 0.5, 1e-6) << g;
+  }
+}
+
+}  // namespace
