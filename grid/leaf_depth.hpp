@@ -1,0 +1,28 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "grid/deep_opacity_map.hpp"
+
+namespace sunfleck {
+
+// Where each leaf sits in its equivalent slab, whose normal is the light's axis.
+struct LeafDepths {
+  std::vector<float> depth;      // d = n+: leaf crossings between the light and the leaf [1], >= 0
+  std::vector<float> thickness;  // w = n+ + n- + 1, the leaf itself included [1], >= depth + 1
+};
+
+// (D6) Depth and thickness of each leaf, Eq. 29: crossing counts along the light's axis, averaged over the light rays
+// (the map's pixels) that meet the leaf. A leaf that no pixel centre falls on is counted at its centre.
+//   neighbours  displacements of the other instances of the tree [m]
+LeafDepths leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, std::span<const glm::vec3> neighbours);
+
+// Centre of area of each leaf [m].
+std::vector<glm::vec3> leafCentres(const TreeMesh& mesh);
+
+// |n.s| of each leaf for the direction s, averaged over its area [1], 0 .. 1.
+std::vector<float> leafProjections(const TreeMesh& mesh, Direction direction);
+
+}  // namespace sunfleck
