@@ -2,7 +2,8 @@
 
 add_library(sunfleck_options INTERFACE)
 target_compile_options(sunfleck_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+  $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion>  # Clang's also warns of double{x}, which says what it does
   $<$<BOOL:${SUNFLECK_WERROR}>:-Werror>)
 if(SUNFLECK_SANITIZE)
   target_compile_options(sunfleck_options INTERFACE -fsanitize=${SUNFLECK_SANITIZE} -fno-omit-frame-pointer
