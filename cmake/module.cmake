@@ -2,7 +2,8 @@
 
 add_library(sunfleck_options INTERFACE)
 target_compile_options(sunfleck_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+  $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion>  # Clang's also warns of double{x}, which says what it does
   $<$<BOOL:${SUNFLECK_WERROR}>:-Werror>)
 if(SUNFLECK_SANITIZE)
   target_compile_options(sunfleck_options INTERFACE -fsanitize=${SUNFLECK_SANITIZE} -fno-omit-frame-pointer
@@ -11,6 +12,10 @@ if(SUNFLECK_SANITIZE)
 endif()
 
 set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ON)  # target all_verify_interface_header_sets compiles each public header alone
+
+# Solvers of the same physics that are checked against each other: none may rest on another, or their agreement would be
+# no evidence.
+set(SUNFLECK_WITNESSES spp pp_solver render/reference)
 
 # sunfleck_module(HEADERS ... [SOURCES ...] [DEPENDS <folder>...] [LINKS <target>...] [PRIVATE_LINKS <target>...])
 # Makes the calling folder a library: render/gl becomes sunfleck::render_gl. A dependency must stand in a layer below
@@ -31,20 +36,35 @@ function(sunfleck_module)
   target_sources(sunfleck_${name} ${scope}
     FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${M_HEADERS})
   target_link_libraries(sunfleck_${name} ${scope} ${M_LINKS})
+
+  set(below ${M_DEPENDS})  # all folders this one rests on, directly or not
   foreach(dependency IN LISTS M_DEPENDS)
     string(REPLACE "/" "_" target "sunfleck_${dependency}")
     if(NOT TARGET ${target})
       message(FATAL_ERROR "${folder} depends on ${dependency}, which is not a layer below it")
     endif()
     target_link_libraries(sunfleck_${name} ${scope} ${target})
+    get_property(further GLOBAL PROPERTY sunfleck_below_${dependency})
+    list(APPEND below ${further})
+  endforeach()
+  set_property(GLOBAL PROPERTY sunfleck_below_${folder} "${below}")
+  foreach(witness IN LISTS SUNFLECK_WITNESSES)
+    if(folder IN_LIST SUNFLECK_WITNESSES AND witness IN_LIST below)
+      message(FATAL_ERROR "${folder} depends on ${witness}, directly or not; their agreement would be no evidence")
+    endif()
   endforeach()
 
   file(GLOB files CONFIGURE_DEPENDS *.hpp *.cpp *.glsl *.vert *.frag detail/*)
   foreach(file IN LISTS files)
-    file(STRINGS "${file}" includes REGEX "^#include \"")
+    file(STRINGS "${file}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
     foreach(line IN LISTS includes)
-      string(REGEX REPLACE "^#include \"(.*)/[^/]*\".*" "\\1" used "${line}")
-      string(REGEX REPLACE "/detail$" "" used "${used}")
+      string(REGEX REPLACE "^[^<\"]*([<\"])([^>\"]*)[>\"].*" "\\2" path "${line}")
+      set(quoted "${CMAKE_MATCH_1}")
+      get_filename_component(used "${path}" DIRECTORY)
+      string(REGEX REPLACE "(^|/)detail$" "" used "${used}")
+      if(quoted STREQUAL "<" AND (NOT used OR NOT EXISTS "${PROJECT_SOURCE_DIR}/${used}"))
+        continue()  # a library's header
+      endif()
       if(NOT used STREQUAL folder AND NOT used IN_LIST M_DEPENDS)
         message(FATAL_ERROR "${file} includes ${used}/, which ${folder} does not declare in DEPENDS")
       endif()
