@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "plants/random_leaves.hpp"
+#include "render/compare/base64.hpp"
+#include "render/compare/category_errors.hpp"
+#include "render/compare/report_html.hpp"
+#include "render/compare/report_json.hpp"
+#include "render/compare/svg_plot.hpp"
+#include "render/compare/validation.hpp"
+
+namespace {
+
+using namespace sunfleck;
+
+// Eight leaves in two categories of 5 and 2, and one alone.
+LeafDepths eightLeaves() {
+  return {.depth = {0.f, 0.1f, 0.2f, 0.4f, 0.f, 2.f, 2.f, 7.f}, .thickness = {3.f, 3.2f, 2.9f, 3.f, 3.f, 4.f, 4.f, 9.f}};
+}
+
+// (R6) Check that leaves are grouped by rounded depth and thickness, and that small categories are left out.
+TEST(R6_Categories, HoldLeavesOfEqualRoundedDepthAndThickness) {
+  const auto large = categories(eightLeaves());
+  ASSERT_EQ(large.size(), 1u);
+  EXPECT_EQ(large[0].depth, 0);
+  EXPECT_EQ(large[0].thickness, 3);
+  EXPECT_EQ(large[0].leaves, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(categories(eightLeaves(), 1).size(), 3u);
+}
+
+// (R6) Check the three RMS and the bias on numbers worked out by hand: category means are 1 (model 1.1) for five leaves and
+// 2 (model 1.8) for two.
+TEST(R6_ModelErrors, AreThoseWorkedOutByHand) {
+  const std::vector<double> reference{0.5, 1.5, 1., 1., 1., 2., 2., 0.};
+  const std::vector<float> model{1.1f, 1.1f, 1.1f, 1.1f, 1.1f, 1.8f, 1.8f, 0.f};
+  const auto errors = modelErrors(model, reference, categories(eightLeaves(), 2));
+  EXPECT_NEAR(errors.rms_category, std::sqrt((0.01 + 0.04) / (1. + 4.)), 1e-7);  // float input
+  EXPECT_NEAR(errors.rms_weighted, std::sqrt((5. * 0.01 + 2. * 0.04) / (5. + 2. * 4.)), 1e-7);
+  EXPECT_NEAR(errors.rms_leaf, std::sqrt((0.36 + 0.16 + 3. * 0.01 + 2. * 0.04) / (0.25 + 2.25 + 3. + 8.)), 1e-7);
+  EXPECT_NEAR(errors.bias, 0.1 / 9., 1e-7);
+}
+
+TEST(R6_ModelErrors, AreZeroForThePerfectModelAndForDarkness) {
+  const std::vector<double> dark(8, 0.);
+  const auto errors = modelErrors(std::vector<float>(8, 0.f), dark, categories(eightLeaves(), 1));
+  EXPECT_EQ(errors.rms_category, 0.);
+  EXPECT_EQ(errors.rms_leaf, 0.);
+  EXPECT_EQ(referenceNoise(dark, dark), 0.);
+}
+
+TEST(ReferenceNoise, IsTheRmsOfStandardErrors) {
+  EXPECT_DOUBLE_EQ(referenceNoise(std::vector<double>{3., 4.}, std::vector<double>{0.3, 0.4}), 0.1);
+}
+
+// Check base64 on the test vectors of RFC 4648 section 10.
+TEST(Base64, MeetsTheStandardsVectors) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+}
+
+// Check that names from files cannot break out of the page.
+TEST(Report, EscapesNames) { EXPECT_EQ(escapeMarkup("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;"); }
+
+// Check that plots of nothing, of zeros and of one point are still well formed and hold no NaN.
+TEST(SvgPlot, HoldsNoNanInTheCorners) {
+  for (const std::string& svg :
+       {linePlot("x", "y", {}), linePlot("x", "y", {{"a", "#000", {{0., 0., 0.}}}}), barPlot("y", {}), barPlot("y", {{"g", "l", "#000", 0., false}})}) {
+    EXPECT_EQ(svg.find("nan"), std::string::npos) << svg;
+    EXPECT_EQ(svg.find("inf"), std::string::npos) << svg;
+    EXPECT_EQ(svg.substr(svg.size() - 6), "</svg>");
+  }
+}
+
+Validation smallValidation(bool periodic, float albedo) {
+  const RandomLayer layer{.size = {0.5f, 0.5f}, .height = 0.5f, .leaf_side = 0.04f, .leaf_area_index = 3.f};
+  Scene scene{.name = "<layer>", .source = "test", .tree = std::make_shared<const TreeMesh>(randomLayer(layer, 1))};
+  scene.leaf.fill({.reflectance = 0.5f * albedo, .transmittance = 0.5f * albedo});
+  if (periodic) scene.stand.period = layer.size;
+  const StandGeometry stand = standGeometry(scene, {.light_resolution = 128, .sample_resolution = 64, .cells = 8});
+  return validate(scene, stand, {.trace = {.paths = 200'000, .seed = 11}});
+}
+
+// (R4) Check the models where the answer is known: black leaves see direct light alone, so all three models agree, and the
+// light they take up is what Monte Carlo finds, but for the difference between e^-d of a mean count and the leaves' true
+// shadows, which averages out over a layer to a few percent (Jensen's inequality; 3 mean layers).
+TEST(R4_LeafIrradiance, OfBlackLeavesIsDirectLight) {
+  const Validation v = smallValidation(true, 0.f);
+  EXPECT_EQ(v.models[0].irradiance, v.models[2].irradiance);
+  EXPECT_EQ(v.models[0].irradiance, v.models[1].irradiance);
+  EXPECT_LT(v.models[0].errors.rms_weighted, 0.6);
+}
+
+// (R4) Check the order that physics asks for: multiple scattering adds light, its compensation takes some away again.
+TEST(R4_LeafIrradiance, OrdersTheModels) {
+  const Validation v = smallValidation(false, 0.95f);
+  for (std::size_t leaf = 0; leaf < v.models[0].irradiance.size(); ++leaf) {
+    EXPECT_LE(v.models[0].irradiance[leaf], v.models[2].irradiance[leaf]);
+    EXPECT_LE(v.models[2].irradiance[leaf], v.models[1].irradiance[leaf]);
+    EXPECT_TRUE(std::isfinite(v.models[1].irradiance[leaf]));
+  }
+}
+
+// Check report.json against the keys that scripts rely on, and that the page holds its parts and no raw names.
+TEST(Report, HoldsWhatScriptsAndPeopleRelyOn) {
+  const std::vector<Validation> validations{smallValidation(false, 0.95f), smallValidation(true, 0.95f)};
+  const auto json = nlohmann::json::parse(reportJson(validations, "1.2.3", "abc"));
+  EXPECT_EQ(json["sunfleck"], "1.2.3");
+  EXPECT_EQ(json["commit"], "abc");
+  for (const char* key : {"name", "leaves", "leaf_area_m2", "mean_depth", "mean_thickness", "albedo", "sun_zenith_deg"})
+    EXPECT_TRUE(json["scene"].contains(key)) << key;
+  for (const char* key : {"paths", "seconds", "rms_noise"}) EXPECT_TRUE(json["reference"][key].is_number()) << key;
+  ASSERT_EQ(json["models"].size(), 3u);
+  EXPECT_EQ(json["models"][0]["name"], "ss");
+  EXPECT_EQ(json["models"][2]["name"], "sppg");
+  for (const char* key : {"rms_category", "rms_weighted", "rms_leaf", "prepare_seconds", "shade_seconds"})
+    EXPECT_TRUE(json["periodic"]["models"][1][key].is_number()) << key;
+
+  const std::string html = reportHtml(validations, std::vector<ReportPicture>{{"a picture", "png"}}, {"sunfleck <x>", "1.2.3", "abc"});
+  EXPECT_EQ(html.find("<layer>"), std::string::npos);
+  EXPECT_NE(html.find("&lt;layer&gt;"), std::string::npos);
+  EXPECT_NE(html.find("sunfleck &lt;x&gt;"), std::string::npos);
+  EXPECT_NE(html.find("data:image/png;base64,cG5n"), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_EQ(html.find("src=\"http"), std::string::npos);
+}
+
+}  // namespace
