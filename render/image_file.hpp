@@ -1,14 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "core/image.hpp"
 
 namespace sunfleck {
 
 // Writes a picture by the file's extension, whole or not at all: .exr keeps linear radiances as 32-bit floats; .png
-// shows them at `exposure` (radiance is multiplied by it, then encoded as sRGB, 8 bits). Throws InvalidInput on another
-// extension or a place that cannot be written.
+// shows them at `exposure` (radiance is multiplied by it, then encoded as sRGB, 8 bits): channels R, G and B, or else
+// the first channel as grey. Throws InvalidInput on another extension or a place that cannot be written.
 void writeImage(const std::filesystem::path& file, const Image& image, float exposure);
 
 // The same PNG as bytes, for embedding in a report.

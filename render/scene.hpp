@@ -44,6 +44,8 @@ struct Scene {
 
 Bounds bounds(const Scene& scene);    // of all trees of the stand [m]
 Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
-Axes viewAxes(const Camera& camera);  // right and up of the picture, and the direction of sight
+// Right and up of the picture, and the direction of sight. Seen as people see, right x up points at the eye, so that
+// these axes are left-handed: right x up = -along.
+Axes viewAxes(const Camera& camera);
 
 }  // namespace sunfleck

@@ -1,0 +1,50 @@
+#include "render/gl/buffer.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace sunfleck::gl {
+namespace {
+
+constexpr std::array<std::byte, 16> kNothing{};
+
+unsigned created() {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  return name;
+}
+
+}  // namespace
+
+Buffer::Buffer(std::span<const std::byte> content) : name_(created()), bytes_(content.size()) {
+  if (content.empty()) content = kNothing;
+  glNamedBufferStorage(name_.get(), static_cast<GLsizeiptr>(content.size()), content.data(), 0);
+}
+
+void Buffer::bindStorage(unsigned binding) const {
+  GLint64 most = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+  if (static_cast<GLint64>(bytes_) > most)
+    throw std::runtime_error("the tree's opacity map needs " + std::to_string(bytes_) +
+                             " bytes in one piece, and OpenGL allows " + std::to_string(most) +
+                             ": a map of lower resolution would fit");
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_.get());
+}
+
+void Buffer::bindUniform(unsigned binding) const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, name_.get());
+}
+
+void Buffer::readInto(std::span<std::byte> content) const {
+  glGetNamedBufferSubData(name_.get(), 0, static_cast<GLsizeiptr>(content.size()), content.data());
+}
+
+void Buffer::destroy(unsigned name) {
+  glDeleteBuffers(1, &name);
+}
+
+}  // namespace sunfleck::gl

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "render/gl/object_name.hpp"
+
+namespace sunfleck::gl {
+
+// Memory of the current context, filled once from the program's.
+class Buffer {
+ public:
+  // Values of a plain type, laid out as the shaders read them. An empty span becomes a few zero bytes, since OpenGL
+  // knows no empty buffer.
+  template <typename T>
+  explicit Buffer(std::span<const T> values) : Buffer(std::as_bytes(values)) {}
+  template <typename T>
+  explicit Buffer(const std::vector<T>& values) : Buffer(std::span<const T>(values)) {}
+  explicit Buffer(std::span<const std::byte> content);
+
+  // Binds it for all shaders. Throws std::runtime_error when it is larger than the driver lets a shader read.
+  void bindStorage(unsigned binding) const;
+  void bindUniform(unsigned binding) const;
+  unsigned name() const { return name_.get(); }
+
+  // The content again.
+  template <typename T>
+  std::vector<T> read() const {
+    std::vector<T> values(bytes_ / sizeof(T));
+    readInto(std::as_writable_bytes(std::span<T>(values)));
+    return values;
+  }
+
+ private:
+  static void destroy(unsigned name);
+  void readInto(std::span<std::byte> content) const;
+  ObjectName<&Buffer::destroy> name_;
+  std::size_t bytes_;
+};
+
+}  // namespace sunfleck::gl

@@ -1,0 +1,33 @@
+#include "render/gl/shader_text.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "render/gl/detail/embedded_text.hpp"
+
+namespace sunfleck::gl {
+
+std::string shaderText(std::string_view path) {
+  const auto texts = detail::embeddedTexts();
+  const auto found = std::ranges::find(texts, path, &detail::EmbeddedText::path);
+  if (found == texts.end()) throw std::logic_error("no shader text " + std::string(path));
+
+  constexpr std::string_view include = "#include \"";
+  std::istringstream in{std::string(found->text)};
+  std::string result;
+  int line_number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++line_number;
+    if (line.starts_with(include)) {
+      const std::string_view named = std::string_view(line).substr(include.size());
+      result += "#line 1\n" + shaderText(named.substr(0, named.find('"')));
+      result += "#line " + std::to_string(line_number + 1) + "\n";
+    } else {
+      result += line + "\n";
+    }
+  }
+  return result;
+}
+
+}  // namespace sunfleck::gl

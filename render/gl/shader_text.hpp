@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace sunfleck::gl {
+
+// The text of a shader file of the repository (such as "render/gl/tree.frag"), which the program carries within it,
+// with the files it includes in their places. Throws std::logic_error when there is no such file.
+std::string shaderText(std::string_view path);
+
+}  // namespace sunfleck::gl

@@ -1,0 +1,49 @@
+#include "render/gl/volume_texture.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace sunfleck::gl {
+namespace {
+
+unsigned created() {
+  GLuint name = 0;
+  glCreateTextures(GL_TEXTURE_3D, 1, &name);
+  return name;
+}
+
+}  // namespace
+
+VolumeTexture::VolumeTexture(glm::ivec3 size, std::span<const float> values) : name_(created()) {
+  const int longest = std::max({size.x, size.y, size.z});
+  if (longest > longestSide())
+    throw std::runtime_error("the trees' cells need a texture of " + std::to_string(longest) +
+                             " texels, and OpenGL allows " + std::to_string(longestSide()));
+  const GLuint name = name_.get();
+  glTextureStorage3D(name, 1, GL_R32F, size.x, size.y, size.z);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTextureSubImage3D(name, 0, 0, 0, 0, size.x, size.y, size.z, GL_RED, GL_FLOAT, values.data());
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    glTextureParameteri(name, wrap, GL_CLAMP_TO_EDGE);
+}
+
+void VolumeTexture::bind(unsigned unit) const {
+  glBindTextureUnit(unit, name_.get());
+}
+
+int VolumeTexture::longestSide() {
+  GLint longest = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &longest);
+  return longest;
+}
+
+void VolumeTexture::destroy(unsigned name) {
+  glDeleteTextures(1, &name);
+}
+
+}  // namespace sunfleck::gl

@@ -1,0 +1,97 @@
+#include "render/image_file.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/require.hpp"
+#include "core/whole_file.hpp"
+
+namespace sunfleck {
+namespace fs = std::filesystem;
+namespace {
+
+// The line that OpenImageIO has left, cut to one.
+std::string reason(const OIIO::ImageOutput* out) {
+  std::string text = out ? out->geterror() : OIIO::geterror();
+  text.resize(std::min(text.find('\n'), text.size()));
+  return text.empty() ? "OpenImageIO gives no reason" : text;
+}
+
+std::string lowered(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// IEC 61966-2-1: linear light [1] to the code value of an 8-bit sRGB picture. What is not a number shows as black.
+std::uint8_t sRgbCode(float linear) {
+  const float light = linear > 0.f ? std::min(linear, 1.f) : 0.f;
+  const float encoded = light <= 0.0031308f ? 12.92f * light : 1.055f * std::pow(light, 1.f / 2.4f) - 0.055f;
+  return static_cast<std::uint8_t>(std::lround(255.f * encoded));
+}
+
+// The channels that a screen shows: R, G, B where there are all three, else the first as grey.
+std::vector<std::size_t> shownChannels(const Image& image) {
+  std::vector<std::size_t> shown;
+  for (std::string_view name : {"R", "G", "B"}) {
+    const auto found = std::ranges::find(image.channels, name);
+    if (found != image.channels.end()) shown.push_back(static_cast<std::size_t>(found - image.channels.begin()));
+  }
+  return shown.size() == 3 ? shown : std::vector<std::size_t>{0};
+}
+
+// `named`: the file as the user calls it; `file`: the one beside it that is written first.
+void writeExr(const fs::path& named, const fs::path& file, const Image& image) {
+  const auto out = OIIO::ImageOutput::create("exr");
+  if (!out) throw InvalidInput(named.string() + ": cannot be written: " + reason(nullptr));
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = image.channels;
+  const auto alpha = std::ranges::find(image.channels, "A");
+  spec.alpha_channel = alpha == image.channels.end() ? -1 : static_cast<int>(alpha - image.channels.begin());
+  spec.attribute("compression", "zip");
+  if (!out->open(file.string(), spec) || !out->write_image(OIIO::TypeDesc::FLOAT, image.values.data()) || !out->close())
+    throw InvalidInput(named.string() + ": cannot be written: " + reason(out.get()));
+}
+
+}  // namespace
+
+void writeImage(const fs::path& file, const Image& image, float exposure) {
+  assert(image.values.size() == image.at(0, image.height, 0));
+  const std::string extension = lowered(file.extension().string());
+  if (extension == ".png")
+    writeWhole(file, pngBytes(image, exposure));
+  else if (extension == ".exr")
+    writeWhole(file, [&](const fs::path& temporary) { writeExr(file, temporary, image); });
+  else
+    throw InvalidInput(file.string() + ": has the extension \"" + file.extension().string() +
+                       "\": a picture's must be .exr or .png");
+}
+
+std::string pngBytes(const Image& image, float exposure) {
+  const std::vector<std::size_t> shown = shownChannels(image);
+  std::vector<std::uint8_t> codes;
+  codes.reserve(image.values.size());
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (const std::size_t channel : shown)
+        codes.push_back(sRgbCode(exposure * image.values[image.at(x, y, channel)]));
+
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const auto out = OIIO::ImageOutput::create("png");
+  if (!out || !out->set_ioproxy(&memory)) throw std::runtime_error("no PNG can be made: " + reason(out.get()));
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(shown.size()), OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  if (!out->open("picture.png", spec) || !out->write_image(OIIO::TypeDesc::UINT8, codes.data()) || !out->close())
+    throw std::runtime_error("no PNG can be made: " + reason(out.get()));
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace sunfleck

@@ -1,0 +1,467 @@
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/random.hpp"
+#include "core/require.hpp"
+#include "render/gl/buffer.hpp"
+#include "render/gl/context.hpp"
+#include "render/gl/program.hpp"
+#include "render/gl/shader_text.hpp"
+#include "render/gl/stand_instances.hpp"
+#include "render/gl/tree_picture.hpp"
+#include "render/gl/tree_renderer.hpp"
+#include "spp/slab.hpp"
+
+namespace {
+
+using namespace sunfleck;
+using gl::ShadingModel;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+// A radiance is a handful of float operations away from its closed form; where exponentials take part, llvmpipe's own
+// add up to 2e-6.
+constexpr float kRounding = 1e-6f, kShading = 4e-6f;
+
+// A horizontal rectangle: a leaf or a piece of wood.
+struct Rectangle {
+  glm::vec2 low, high;
+  float z;
+  bool wood = false;
+};
+
+// A tree of rectangles under a sun overhead, with the opacity map that a careful reader would draw by hand.
+struct Rectangles {
+  TreeMesh mesh;
+  std::vector<std::uint32_t> first{0};
+  std::vector<Crossing> crossings;
+  std::vector<float> wood_depth;
+  gl::SunMap map;
+
+  // `things` from top to bottom; the map covers -2 .. 2 along x and y.
+  explicit Rectangles(const std::vector<Rectangle>& things, int resolution = 16) {
+    for (const Rectangle& r : things) {
+      const auto corner = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const glm::vec2 at : {r.low, {r.high.x, r.low.y}, r.high, {r.low.x, r.high.y}})
+        mesh.vertices.push_back({at, r.z});
+      for (const glm::uvec3 t : {glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)})
+        (r.wood ? mesh.wood_triangles : mesh.leaf_triangles).push_back(t + corner);
+    }
+    finish(mesh, "test");
+    map.axes = axesAlong({0.f, 0.f, -1.f});
+    map.corner = glm::vec2(-2.f);
+    map.size = glm::ivec2(resolution);
+    map.pixel_size = 4.f / static_cast<float>(resolution);
+    for (int y = 0; y < resolution; ++y)
+      for (int x = 0; x < resolution; ++x) {
+        const glm::vec2 in_map = map.corner + map.pixel_size * (glm::vec2(x, y) + 0.5f);
+        const glm::vec2 at = in_map.x * glm::vec2(map.axes.right) + in_map.y * glm::vec2(map.axes.up);
+        float wood = std::numeric_limits<float>::infinity();
+        std::uint32_t leaf = 0;
+        for (const Rectangle& r : things) {
+          const bool hit = at.x > r.low.x && at.x < r.high.x && at.y > r.low.y && at.y < r.high.y;
+          if (hit && r.wood) wood = std::min(wood, -r.z);
+          if (hit && !r.wood) crossings.push_back({.depth = -r.z, .leaf = leaf});
+          if (!r.wood) ++leaf;
+        }
+        first.push_back(static_cast<std::uint32_t>(crossings.size()));
+        wood_depth.push_back(wood);
+      }
+    map.first = first;
+    map.crossings = crossings;
+    map.wood_depth = wood_depth;
+  }
+  Rectangles(const Rectangles&) = delete;
+  Rectangles& operator=(const Rectangles&) = delete;
+
+  Scene scene() const {
+    Scene scene;
+    scene.tree = std::make_shared<TreeMesh>(mesh);
+    scene.leaf = {LeafOptics{0.1f, 0.3f}, LeafOptics{0.5f, 0.4f}, LeafOptics{0.475f, 0.475f}};
+    return scene;
+  }
+};
+
+Camera cameraFrom(float elevation_degrees, float half_width = 0.5f, int size = 4) {
+  return {.elevation = elevation_degrees * kPi / 180.f, .half_width = half_width, .width = size, .height = size};
+}
+
+Image picture(const Scene& scene, const gl::SunMap& map, const Camera& camera, ShadingModel model,
+              const gl::CompensationCells& cells = {}) {
+  const gl::Context context;
+  return gl::TreeRenderer(context, scene, map, cells).picture(camera, model);
+}
+
+constexpr Rectangle kWide{{-1.f, -1.f}, {1.f, 1.f}, 1.f};
+
+void expectRadiance(const Image& image, int x, int y, glm::vec3 expected, float tolerance) {
+  for (int band = 0; band < kBands; ++band)
+    EXPECT_NEAR(image.values[image.at(x, y, static_cast<std::size_t>(band))], expected[band], tolerance)
+        << "band " << band << " at " << x << ", " << y;
+}
+
+glm::vec3 perBand(const Scene& scene, const auto& of) {
+  return {of(scene.leaf[0]), of(scene.leaf[1]), of(scene.leaf[2])};
+}
+
+// Powers of the slab less direct light.
+spp::SlabPowers diffuse(float depth, float thickness, float albedo) {
+  spp::SlabPowers powers = spp::sppPowers(depth, thickness, 1.f, albedo, 0.5f);
+  powers.down -= spp::directPower(depth, 1.f);
+  return powers;
+}
+
+// Check that a context comes up on a machine without a display, more than once and several at a time.
+TEST(Context, NeedsNoDisplay) {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  for (int i = 0; i < 2; ++i) {
+    const gl::Context outer;
+    { const gl::Context inner; }
+    EXPECT_FALSE(gl::Context().renderer().empty());
+  }
+}
+
+// Check that the driver's errors come out as exceptions, once.
+TEST(Context, ReportsTheDriversErrors) {
+  const gl::Context context;
+  EXPECT_NO_THROW(context.requireNoError("doing nothing"));
+  glEnable(0xdead);
+  EXPECT_THROW(context.requireNoError("enabling nonsense"), std::runtime_error);
+  EXPECT_NO_THROW(context.requireNoError("doing nothing"));
+}
+
+TEST(Program, NamesTheShaderThatDoesNotCompile) {
+  const gl::Context context;
+  try {
+    const gl::Program broken{
+        {.stage = gl::Stage::vertex, .name = "broken.vert", .text = "#version 450 core\nvoid main("}};
+    FAIL() << "nonsense was compiled";
+  } catch (const std::runtime_error& e) {
+    EXPECT_EQ(std::string(e.what()).find("broken.vert: does not compile: "), 0u) << e.what();
+    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+  }
+  EXPECT_THROW(gl::shaderText("render/gl/none.frag"), std::logic_error);
+}
+
+// Check that the shared formulas give on the GPU what they give in C++, over 4,096 random inputs and all corners. The
+// bound, 2e-6 absolute and relative, is what the exponentials of llvmpipe and libm may differ by.
+TEST(SharedFormulas, AgreeBetweenGpuAndCpu) {
+  struct Input {
+    float depth, thickness, mu0, albedo, forward_share, cosine, edge, compensation;
+  };
+  struct Output {
+    std::array<float, 12> values;
+  };
+  std::vector<Input> inputs;
+  Random random(1, 0);
+  for (int i = 0; i < 4096; ++i) {
+    const float thickness = std::exp(12.f * random.uniform() - 6.f);
+    inputs.push_back({.depth = thickness * random.uniform(),
+                      .thickness = thickness,
+                      .mu0 = 1.f - random.uniform(),
+                      .albedo = random.uniform(),
+                      .forward_share = random.uniform(),
+                      .cosine = 2.f * random.uniform() - 1.f,
+                      .edge = 2.f * thickness * random.uniform(),
+                      .compensation = random.uniform()});
+  }
+  for (const float thickness : {1e-8f, 1.f, 1e6f, std::numeric_limits<float>::infinity()})
+    for (const float part : {0.f, 0.5f, 1.f})
+      for (const float mu0 : {1e-2f, 1.f})
+        for (const float albedo : {0.f, 0.9999f, 1.f})
+          for (const float cosine : {-1.f, 0.f, 1.f})
+            for (const float edge : {0.f, 1.f, 1e9f})
+              inputs.push_back({.depth = part == 0.f ? 0.f : part * std::min(thickness, 1e7f),
+                                .thickness = thickness,
+                                .mu0 = mu0,
+                                .albedo = albedo,
+                                .forward_share = 0.5f,
+                                .cosine = cosine,
+                                .edge = edge,
+                                .compensation = 0.5f});
+
+  const std::string text =
+      "#version 450 core\n" + gl::shaderText("render/gl/prelude.glsl") + gl::shaderText("spp/spp_formulas.glsl") + R"(
+    layout(local_size_x = 64) in;
+    struct Input { float depth, thickness, mu0, albedo, forward_share, cosine, edge, compensation; };
+    struct Output { float values[12]; };
+    layout(std430, binding = 0) readonly buffer Inputs { Input inputs[]; };
+    layout(std430, binding = 1) writeonly buffer Outputs { Output outputs[]; };
+    void main() {
+      uint i = gl_GlobalInvocationID.x;
+      if (i >= inputs.length()) return;
+      Input x = inputs[i];
+      float direct = directPower(x.depth, x.mu0);
+      SlabPowers p = sppPowers(x.depth, x.thickness, x.mu0, x.albedo, x.forward_share);
+      SlabPowers radiance = sppDiffuseRadiance(p, direct);
+      SlabPowers c = compensated(p, direct, x.compensation);
+      outputs[i].values[0] = expm1(-x.edge);
+      outputs[i].values[1] = decayMean(x.edge);
+      outputs[i].values[2] = direct;
+      outputs[i].values[3] = p.down;
+      outputs[i].values[4] = p.up;
+      outputs[i].values[5] = radiance.down;
+      outputs[i].values[6] = radiance.up;
+      outputs[i].values[7] = leafIrradiance(abs(x.cosine), direct, p);
+      outputs[i].values[8] = shareBeyondEdge(x.cosine, x.edge, x.depth, x.thickness, x.mu0);
+      outputs[i].values[9] = c.down;
+      outputs[i].values[10] = c.up;
+      outputs[i].values[11] = leafRadiance(x.cosine, x.compensation, -x.cosine, p, 0.5, 0.25);
+    })";
+  const gl::Context context;
+  const gl::Program program{{.stage = gl::Stage::compute, .name = "formulas", .text = text}};
+  const gl::Buffer in(inputs), out(std::vector<Output>(inputs.size()));
+  in.bindStorage(0);
+  out.bindStorage(1);
+  program.use();
+  glDispatchCompute(static_cast<GLuint>(inputs.size() / 64 + 1), 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  const std::vector<Output> outputs = out.read<Output>();
+  context.requireNoError("evaluating the formulas");
+
+  std::array<float, 12> worst{};
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Input& x = inputs[i];
+    const float direct = spp::directPower(x.depth, x.mu0);
+    const spp::SlabPowers p = spp::sppPowers(x.depth, x.thickness, x.mu0, x.albedo, x.forward_share);
+    const spp::SlabPowers radiance = spp::sppDiffuseRadiance(p, direct);
+    const spp::SlabPowers c = spp::compensated(p, direct, x.compensation);
+    const std::array<float, 12> expected{std::expm1(-x.edge),
+                                         spp::decayMean(x.edge),
+                                         direct,
+                                         p.down,
+                                         p.up,
+                                         radiance.down,
+                                         radiance.up,
+                                         spp::leafIrradiance(std::abs(x.cosine), direct, p),
+                                         spp::shareBeyondEdge(x.cosine, x.edge, x.depth, x.thickness, x.mu0),
+                                         c.down,
+                                         c.up,
+                                         spp::leafRadiance(x.cosine, x.compensation, -x.cosine, p, 0.5f, 0.25f)};
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      EXPECT_NEAR(outputs[i].values[k], expected[k], 2e-6f + 2e-6f * std::abs(expected[k]))
+          << "formula " << k << ": depth " << x.depth << " thickness " << x.thickness << " mu0 " << x.mu0 << " albedo "
+          << x.albedo << " forward " << x.forward_share << " cosine " << x.cosine << " edge " << x.edge;
+      worst[k] = std::max(worst[k], std::abs(outputs[i].values[k] - expected[k]));
+    }
+  }
+  for (std::size_t k = 0; k < worst.size(); ++k) RecordProperty("worst_" + std::to_string(k), std::to_string(worst[k]));
+}
+
+// (R3) Check that a leaf that faces the sun sends rho / pi back and tau / pi on, and covers the picture.
+TEST(R3_TreePicture, OfALeafInFullLight) {
+  const Rectangles leaf({kWide});
+  const Scene scene = leaf.scene();
+  for (const bool above : {true, false}) {
+    const Image image = picture(scene, leaf.map, cameraFrom(above ? 90.f : -90.f), ShadingModel::ss);
+    ASSERT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+    const glm::vec3 expected =
+        perBand(scene, [&](const LeafOptics& o) { return (above ? o.reflectance : o.transmittance) / kPi; });
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 4; ++x) {
+        expectRadiance(image, x, y, expected, kRounding);
+        EXPECT_EQ(image.values[image.at(x, y, 3)], 1.f);
+      }
+  }
+}
+
+// (R3) Check that a leaf alone is a slab of thickness 1 to SPP: in direct light, and in the light it sends itself.
+TEST(R3_TreePicture, OfALeafAloneBySpp) {
+  const Rectangles leaf({kWide});
+  const Scene scene = leaf.scene();
+  const Image image = picture(scene, leaf.map, cameraFrom(90.f), ShadingModel::spp);
+  const glm::vec3 expected = perBand(scene, [](const LeafOptics& o) {
+    return spp::leafRadiance(1.f, 1.f, 1.f, diffuse(0.f, 1.f, o.albedo()), o.reflectance, o.transmittance);
+  });
+  expectRadiance(image, 2, 2, expected, kShading);
+}
+
+// (R3) Check a leaf in the shadow of another, seen from below: black in direct light alone; lit by the slab's light;
+// by G times that with a G of 1/4 in all cells; and all the same when a second tree of the stand casts the shadow.
+TEST(R3_TreePicture, OfALeafInShadow) {
+  const Rectangles two({{kWide.low, kWide.high, 1.f}, {kWide.low, kWide.high, 0.f}});
+  const Rectangles one({{kWide.low, kWide.high, 0.f}});
+  Scene trees = one.scene();
+  trees.stand.trees.push_back({.position = {0.f, 0.f, 1.f}});
+  const std::vector<float> quarter(8, 0.25f);
+  const Camera camera = cameraFrom(-90.f);
+  for (const bool as_stand : {false, true}) {
+    const Scene scene = as_stand ? trees : two.scene();
+    const gl::SunMap& map = as_stand ? one.map : two.map;
+    const gl::CompensationCells cells{
+        .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {scene.stand.trees.size(), quarter}};
+    expectRadiance(picture(scene, map, camera, ShadingModel::ss), 2, 2, glm::vec3(0.f), 0.f);
+    for (const float compensation : {1.f, 0.25f}) {
+      const Image image =
+          picture(scene, map, camera, compensation == 1.f ? ShadingModel::spp : ShadingModel::sppg, cells);
+      const glm::vec3 expected =
+          compensation * perBand(scene, [](const LeafOptics& o) {
+            return spp::leafRadiance(-1.f, 0.f, -1.f, diffuse(1.f, 2.f, o.albedo()), o.reflectance, o.transmittance);
+          });
+      expectRadiance(image, 2, 2, expected, kShading);
+      EXPECT_GT(image.values[image.at(2, 2, 1)], 0.005f);
+    }
+  }
+}
+
+// (R3) Check that each tree of a stand reads its own G: 0 in one, 1 in the other, which are far apart.
+TEST(R3_TreePicture, ReadsTheCellsOfEachTree) {
+  const Rectangles two({{kWide.low, kWide.high, 1.f}, {kWide.low, kWide.high, 0.f}});
+  Scene scene = two.scene();
+  scene.stand.trees.push_back({.position = {10.f, 0.f, 0.f}});
+  const std::vector<float> none(8, 0.f), all(8, 1.f);
+  const gl::CompensationCells cells{
+      .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {none, all}};
+  Camera camera = cameraFrom(-90.f);
+  expectRadiance(picture(scene, two.map, camera, ShadingModel::sppg, cells), 2, 2, glm::vec3(0.f), 0.f);
+  camera.target.x = 10.f;
+  const Image lit = picture(scene, two.map, camera, ShadingModel::sppg, cells);
+  const Image spp = picture(scene, two.map, camera, ShadingModel::spp, cells);
+  EXPECT_NEAR(lit.values[lit.at(2, 2, 1)], spp.values[spp.at(2, 2, 1)], kShading);
+}
+
+// (R3) Check that the rim of a shadow is as the nearest four pixels of the map say: with a leaf over all x < 0, light
+// grows linearly from 0 at half a map pixel before the rim to 1 half a pixel beyond it. Rows of 8 pixels span it, each
+// the mean of two samples, which a linear function's mean over the pixel equals.
+TEST(R3_TreePicture, SmoothsTheRimOfAShadow) {
+  const Rectangles half({{{-2.f, -2.f}, {0.f, 2.f}, 1.f}, {{-2.f, -2.f}, {2.f, 2.f}, 0.f}});
+  const Scene scene = half.scene();
+  const float map_pixel = half.map.pixel_size;
+  const Image image = picture(scene, half.map, cameraFrom(-90.f, 0.5f * map_pixel, 8), ShadingModel::ss);
+  // Seen from below with the camera at azimuth 0, the picture's up is +x: rows run from x > 0 down.
+  for (int row = 0; row < 8; ++row) {
+    const float lit = 1.f - (static_cast<float>(row) + 0.5f) / 8.f;
+    expectRadiance(image, 3, row, lit * perBand(scene, [](const LeafOptics& o) { return o.transmittance / kPi; }),
+                   4e-6f);
+  }
+}
+
+// (R3) Check that wood in full light sends back its reflectance / pi and nothing on, and that it shades what is below
+// it.
+TEST(R3_TreePicture, OfWood) {
+  const Rectangles tree({{kWide.low, kWide.high, 1.f, true}, {kWide.low, kWide.high, 0.f}});
+  Scene scene = tree.scene();
+  scene.wood_reflectance = {0.2f, 0.3f, 0.4f};
+  expectRadiance(picture(scene, tree.map, cameraFrom(90.f), ShadingModel::ss), 2, 2, scene.wood_reflectance / kPi,
+                 kRounding);
+  expectRadiance(picture(scene, tree.map, cameraFrom(-90.f), ShadingModel::ss), 2, 2, glm::vec3(0.f), 0.f);
+}
+
+// Pixel that a point falls in.
+glm::ivec2 pixelOf(const Camera& camera, glm::vec3 point) {
+  const Axes axes = viewAxes(camera);
+  const float scale = 0.5f * static_cast<float>(camera.width) / camera.half_width;
+  return {static_cast<int>(std::floor(0.5f * static_cast<float>(camera.width) +
+                                      scale * glm::dot(point - camera.target, axes.right))),
+          static_cast<int>(
+              std::floor(0.5f * static_cast<float>(camera.height) - scale * glm::dot(point - camera.target, axes.up)))};
+}
+
+// (R3) Check the ground below a leaf on a thin post: lit by albedo / pi beside the shadow, black in it by direct light
+// alone, lit by what the slab lets through by SPP, and black sky beyond its rim.
+TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
+  const Rectangles tree({{kWide.low, kWide.high, 1.f}, {{1.5f, 1.5f}, {1.51f, 1.51f}, 0.f, true}});
+  Scene scene = tree.scene();
+  scene.ground_albedo = {0.1f, 0.2f, 0.3f};
+  const Camera camera = cameraFrom(30.f, 6.f, 120);
+  const glm::ivec2 shadow = pixelOf(camera, {0.5f, 0.f, 0.f}), sun = pixelOf(camera, {1.7f, -1.3f, 0.f}),
+                   beyond = pixelOf(camera, {0.f, 5.5f, 0.f});
+  const Image ss = picture(scene, tree.map, camera, ShadingModel::ss);
+  expectRadiance(ss, shadow.x, shadow.y, glm::vec3(0.f), 0.f);
+  expectRadiance(ss, sun.x, sun.y, scene.ground_albedo / kPi, kRounding);
+  EXPECT_EQ(ss.values[ss.at(shadow.x, shadow.y, 3)], 1.f);
+  EXPECT_EQ(ss.values[ss.at(beyond.x, beyond.y, 3)], 0.f);
+
+  // A plane gathers half the power of a half-sphere of uniform radiance.
+  const glm::vec3 passed =
+      perBand(scene, [](const LeafOptics& o) { return 0.5f * diffuse(1.f, 1.f, o.albedo()).down; });
+  const Image spp = picture(scene, tree.map, camera, ShadingModel::spp);
+  expectRadiance(spp, shadow.x, shadow.y, scene.ground_albedo * passed / kPi, kShading);
+  EXPECT_GT(passed.g, 0.05f);
+
+  const std::vector<float> half(8, 0.5f);
+  const gl::CompensationCells cells{.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {half}};
+  const Image sppg = picture(scene, tree.map, camera, ShadingModel::sppg, cells);
+  expectRadiance(sppg, shadow.x, shadow.y, 0.5f * scene.ground_albedo * passed / kPi, kShading);
+
+  scene.ground_albedo = glm::vec3(0.f);
+  const Image none = picture(scene, tree.map, camera, ShadingModel::ss);
+  EXPECT_EQ(none.values[none.at(sun.x, sun.y, 3)], 0.f);
+}
+
+// (R3) Check that the same picture twice is the same bits.
+TEST(R3_TreePicture, IsDeterministic) {
+  const Rectangles tree({kWide, {{-0.5f, -0.5f}, {1.5f, 1.f}, 0.5f}, {{-1.5f, -1.f}, {0.3f, 1.5f}, 0.f}});
+  Scene scene = tree.scene();
+  scene.ground_albedo = glm::vec3(0.2f);
+  const Camera camera = cameraFrom(40.f, 2.f, 40);
+  const Image one = picture(scene, tree.map, camera, ShadingModel::spp);
+  const Image two = picture(scene, tree.map, camera, ShadingModel::spp);
+  EXPECT_EQ(one.values, two.values);
+}
+
+// (R3) Check that a picture of several tiles has no seam: a leaf over its left half covers just that.
+TEST(R3_TreePicture, HasNoSeams) {
+  const Rectangles leaf({kWide});
+  Camera camera = cameraFrom(90.f, 0.5f, 1100);
+  camera.height = 2;
+  camera.target = {0.f, 1.f, 0.f};  // the picture's right is +y
+  const Image image = picture(leaf.scene(), leaf.map, camera, ShadingModel::ss);
+  for (int x = 0; x < 1100; ++x) ASSERT_EQ(image.values[image.at(x, 1, 3)], x < 550 ? 1.f : 0.f) << x;
+}
+
+// (R3) Check that a rotated tree and a camera that sees nothing are refused by one line.
+TEST(R3_TreePicture, RefusesWhatItCannotDraw) {
+  const Rectangles leaf({kWide});
+  Scene scene = leaf.scene();
+  scene.camera = cameraFrom(90.f);
+  scene.camera->half_width = 0.f;
+  EXPECT_THROW(gl::treePicture(scene, {}, ShadingModel::ss), InvalidInput);
+  scene.camera = cameraFrom(90.f, 1.f, 0);
+  EXPECT_THROW(gl::treePicture(scene, {}, ShadingModel::ss), InvalidInput);
+  scene.camera = cameraFrom(90.f);
+  EXPECT_THROW(gl::treePicture(scene, {}, ShadingModel::ss), std::invalid_argument);  // no map
+  scene.stand.trees[0].rotation = 1.f;
+  EXPECT_THROW(gl::treePicture(scene, {}, ShadingModel::ss), InvalidInput);
+}
+
+// (R4) Check who shades whom: with the sun overhead trees 3 m apart do not meet a map 4 m wide at 5 m distance; a low
+// sun brings those along its way together, not those across it.
+TEST(R4_StandInstances, KnowWhoMayStandInTheLight) {
+  Rectangles leaf({kWide});
+  Stand stand{.trees = {{.position = {0.f, 0.f, 0.f}}, {.position = {3.f, 0.f, 0.f}}, {.position = {0.f, 9.f, 0.f}}},
+              .period = {}};
+  const auto neighbours = [](const gl::StandInstances& s, std::size_t i) {
+    return s.drawn[i].neighbours_end - s.drawn[i].first_neighbour;
+  };
+  const gl::GroundDisc ground{.centre = glm::vec3(0.f), .radius = 1.f};
+  const gl::StandInstances overhead = gl::standInstances(stand, leaf.map, ground);
+  ASSERT_EQ(overhead.drawn.size(), 3u);
+  EXPECT_EQ(neighbours(overhead, 0), 2u);
+  EXPECT_EQ(neighbours(overhead, 2), 1u);
+  EXPECT_EQ(overhead.neighbours[overhead.drawn[1].first_neighbour].displacement, glm::vec3(0.f));
+  EXPECT_EQ(overhead.neighbours[overhead.drawn[1].first_neighbour].tree, 1u);
+  EXPECT_EQ(overhead.neighbours[overhead.drawn[1].first_neighbour + 1].displacement, glm::vec3(-3.f, 0.f, 0.f));
+
+  leaf.map.axes = axesAlong(sunlight(80.f * kPi / 180.f, 0.5f * kPi));  // along y
+  const gl::StandInstances low = gl::standInstances(stand, leaf.map, ground);
+  EXPECT_EQ(neighbours(low, 2), 3u);
+
+  stand.trees.resize(1);
+  stand.period = glm::vec2(5.f);
+  leaf.map.axes = axesAlong({0.f, 0.f, -1.f});
+  const gl::StandInstances periodic = gl::standInstances(stand, leaf.map, ground);
+  EXPECT_EQ(periodic.drawn.size(), 9u);
+  EXPECT_EQ(neighbours(periodic, 0), 1u);
+  EXPECT_EQ(neighbours(periodic, 8), 1u);
+}
+
+}  // namespace
