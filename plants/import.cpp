@@ -1,0 +1,55 @@
+#include "plants/import.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/require.hpp"
+#include "plants/detail/input_file.hpp"
+#include "plants/detail/leaf_or_wood.hpp"
+#include "plants/detail/obj.hpp"
+#include "plants/detail/ply.hpp"
+
+namespace sunfleck {
+namespace {
+
+std::string extensionOf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+ImportedTree readNameless(const std::string& text, const std::string& source, const ImportRules& rules) {
+  const bool all_leaf = rules.leaf.empty() || rules.leaf == std::vector<std::string>{"*"};
+  if (!all_leaf || !rules.wood.empty())
+    throw InvalidInput(source + ": a PLY has no names that --leaf or --wood could match: all of it is leaf");
+  return {.mesh = detail::readPly(text, source), .dropped = {}, .how = "a PLY has no names: every face is leaf"};
+}
+
+void toMetresZUp(std::vector<glm::vec3>& vertices, const ImportRules& rules) {
+  for (glm::vec3& v : vertices) {
+    if (rules.up == ImportRules::Up::y) v = {v.x, -v.z, v.y};
+    v *= rules.scale;
+  }
+}
+
+}  // namespace
+
+ImportedTree importTree(const std::filesystem::path& path, const ImportRules& rules) {
+  detail::validate(rules);
+  const std::string source = detail::shown(path.string());
+  std::string text = detail::readWhole(path);
+  const std::string extension = extensionOf(path);
+  ImportedTree tree;
+  if (extension == ".obj")
+    tree = detail::readObj(path, std::move(text), rules);
+  else if (extension == ".ply")
+    tree = readNameless(text, source, rules);
+  else
+    throw InvalidInput(source + ": cannot be read: a tree is an .obj or a .ply file");
+  toMetresZUp(tree.mesh.vertices, rules);
+  tree.dropped = finish(tree.mesh, source);
+  return tree;
+}
+
+}  // namespace sunfleck

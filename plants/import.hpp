@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/tree_mesh.hpp"
+
+namespace sunfleck {
+
+// How a tree file is to be read.
+struct ImportRules {
+  enum class Up { z, y };
+
+  // Names of leaf and of wood in the file: its materials, groups and objects. Upper and lower case are the same; a
+  // pattern with *, ? or [ is matched as a whole, any other may stand anywhere in the name. When only one list is
+  // given, all that it does not match is of the other kind; "*" stands for all that the other list does not match.
+  std::vector<std::string> leaf, wood;
+  float scale = 1.f;  // metres per unit of the file [m], > 0
+  Up up = Up::z;      // the file's upward axis
+};
+
+struct ImportedTree {
+  TreeMesh mesh;
+  Dropped dropped;  // triangles of no area that were left out
+  std::string how;  // one line: how leaf and wood were told apart
+};
+
+// Reads a tree from an OBJ or a PLY file, by its extension. Leaf and wood in an OBJ are told apart by the rules; else
+// by the words in its material, group and object names; else by the materials' colours when these are brown and not
+// brown. All of a PLY, which has no names, is leaf. Leaf triangles that share a vertex are one leaf. Throws
+// InvalidInput, with the file and where possible the line, on a file that cannot be read, is empty, has no faces, is
+// broken or truncated, has coordinates that are not finite or beyond 1e6 m, indices out of range, no leaf, or leaf and
+// wood that cannot be told apart.
+ImportedTree importTree(const std::filesystem::path& path, const ImportRules& rules = {});
+
+}  // namespace sunfleck
