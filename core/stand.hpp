@@ -16,7 +16,7 @@ struct Placement {
 // The arrangement of the copies of one prototype. With a period, the whole arrangement repeats without end in x and y.
 struct Stand {
   std::vector<Placement> trees{Placement{}};  // at least one
-  std::optional<glm::vec2> period;            // side lengths of the repeated rectangle [m], > 0
+  std::optional<glm::vec2> period{};          // side lengths of the repeated rectangle [m], > 0
 };
 
 }  // namespace sunfleck

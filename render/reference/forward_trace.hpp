@@ -13,37 +13,56 @@ namespace sunfleck {
 // One band of light and the sun that sends it.
 struct TraceLight {
   Direction sun{0.f, 0.f, -1.f};  // direction of travel; z < 0
-  LeafOptics leaf;
+  LeafOptics leaf{};
   float wood_reflectance = 0.3f;  // Lambertian [1], 0 .. 1
   float ground_albedo = 0.f;      // Lambertian [1], 0 .. 1
 };
 
+// Paths are traced in this many batches of equal size, whose spread gives the standard errors.
+inline constexpr int kTraceBatches = 64;
+
 struct TraceEffort {
-  std::uint64_t paths = 1'000'000;  // >= batches
+  std::uint64_t paths = 1'000'000;  // >= kTraceBatches, rounded up to whole batches
   std::uint64_t seed = 1;
   int threads = 0;  // 0: all cores. The result is the same for any number
 };
 
-// A share of the incident flux and its standard error.
+// Throw InvalidInput on a value out of its range, a sun that does not shine down or is no unit vector.
+void validate(const TraceLight& light);
+void validate(const TraceEffort& effort);
+
+// A mean and its standard error, from the spread of independent parts. Where there is one part alone, nothing is known
+// of the spread: the standard error is then the value itself.
 struct Estimate {
   double value = 0., standard_error = 0.;
 };
 
-// Where the sun's light ends up, as shares of the incident flux: what falls through the horizontal top of the traced
-// box (one period of a periodic stand; for a single stand the box of its trees).
+// Where the sun's light ends up, as shares of the incident flux: the sunlight that enters the traced box. A periodic
+// stand is entered through the horizontal top of one period; a stand without period through the sunlit faces of the box
+// of its trees, the top and, unless the sun is overhead, the sides. Light that leaves downward arrives at the ground,
+// wherever it leaves the box; light that leaves upward is reflected. So
+// reflected + absorbed_leaves + absorbed_wood + absorbed_ground = 1.
 struct ForwardResult {
-  Estimate reflected;  // leaves upward or, for a stand without period, sideways
+  Estimate reflected;
   Estimate absorbed_leaves, absorbed_wood;
-  Estimate arriving_ground, arriving_ground_direct, absorbed_ground;
+  Estimate arriving_ground;         // every arrival counted, also after reflection by the ground itself
+  Estimate arriving_ground_direct;  // of these, the light that met nothing before
+  Estimate absorbed_ground;
   // Of each leaf of the prototype, both sides together per one-sided area, for sun irradiance 1 on a plane facing the
   // sun; the mean over the stand's copies.
   std::vector<double> leaf_irradiance;      // E [1]
   std::vector<double> leaf_standard_error;  // of E, from batches [1]
   std::uint64_t paths = 0;                  // traced; fewer than asked for when ended early
-  double seconds = 0., cpu_seconds = 0.;
+  double seconds = 0.;                      // wall time
+  double cpu_seconds = 0.;                  // of all threads of the process
 };
 
-// (R1) Monte Carlo from the sun to the leaves. Paths are traced in batches whose order of summation is fixed.
+// (R1) Monte Carlo from the sun to the leaves. Leaves scatter by Lambert's law on both sides, wood and ground on one.
+// The ground lies at the bottom of the box. When `progress` ends it early, the batches done until then are the result,
+// at least one.
+//   mesh  the one `scene` was made of
+// Throws InvalidInput on invalid light or effort, and on a ground that reflects under a stand without period: where
+// that light would go cannot be told from the box alone (traceCamera takes any).
 ForwardResult traceForward(const RayScene& scene, const TreeMesh& mesh, const TraceLight& light,
                            const TraceEffort& effort, const Progress& progress = {});
 

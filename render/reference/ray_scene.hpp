@@ -13,15 +13,20 @@ namespace sunfleck {
 class RayScene {
  public:
   // `with_wood`: whether wood stops light; without it the leaves stand alone.
+  // Throws InvalidInput on a stand without trees, a placement or period that is not finite, a period <= 0 or one so
+  // small that more than a million copies of the tree reach into it.
   RayScene(const TreeMesh& mesh, const Stand& stand, bool with_wood);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  const Bounds& box() const;  // of everything that can be hit; of one period, if periodic [m]
+  // Of everything that can be hit [m]. If periodic: in x and y one period around the middle of the stand, in z the
+  // height of its trees.
+  const Bounds& box() const;
 
   // (R5) Exact number of leaf crossings on the line from `from` along `direction` without end: the check of the deep
-  // opacity maps. Not for periodic stands.
+  // opacity maps. A leaf that the line meets on an edge shared by two of its triangles is crossed once. Wood is passed
+  // through. Throws InvalidInput for a periodic stand, where the number may be infinite.
   int crossings(glm::vec3 from, glm::vec3 direction) const;
 
   struct Geometry;  // Embree's scenes; complete in render/reference/ alone

@@ -1,0 +1,65 @@
+#pragma once
+
+// The few calls of Embree whose form changed between versions 3 and 4.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace sunfleck::detail {
+
+enum class Coherence { incoherent, coherent };
+
+#if RTC_VERSION_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+inline constexpr RTCSceneFlags kFilterPerCall = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+
+inline RTCIntersectArguments intersectArguments(Coherence coherence) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  if (coherence == Coherence::coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  return arguments;
+}
+inline void closestHit(RTCScene scene, RTCRayHit& ray, Coherence coherence) {
+  RTCIntersectArguments arguments = intersectArguments(coherence);
+  rtcIntersect1(scene, &ray, &arguments);
+}
+inline void anyHit(RTCScene scene, RTCRay& ray) {
+  rtcOccluded1(scene, &ray);
+}
+inline void initialise(EmbreeContext& context) {
+  rtcInitRayQueryContext(&context);
+}
+inline void filterHits(RTCScene scene, RTCRayHit& ray, EmbreeContext& context, RTCFilterFunctionN filter) {
+  RTCIntersectArguments arguments = intersectArguments(Coherence::incoherent);
+  arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+  arguments.context = &context;
+  arguments.filter = filter;
+  rtcIntersect1(scene, &ray, &arguments);
+}
+#else
+using EmbreeContext = RTCIntersectContext;
+inline constexpr RTCSceneFlags kFilterPerCall = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+
+inline void initialise(EmbreeContext& context) {
+  rtcInitIntersectContext(&context);
+}
+inline void closestHit(RTCScene scene, RTCRayHit& ray, Coherence coherence) {
+  EmbreeContext context;
+  initialise(context);
+  if (coherence == Coherence::coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect1(scene, &context, &ray);
+}
+inline void anyHit(RTCScene scene, RTCRay& ray) {
+  EmbreeContext context;
+  initialise(context);
+  rtcOccluded1(scene, &context, &ray);
+}
+inline void filterHits(RTCScene scene, RTCRayHit& ray, EmbreeContext& context, RTCFilterFunctionN filter) {
+  context.filter = filter;
+  rtcIntersect1(scene, &context, &ray);
+}
+#endif
+
+}  // namespace sunfleck::detail

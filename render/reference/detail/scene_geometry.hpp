@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "render/reference/detail/embree_calls.hpp"
+#include "render/reference/detail/stand_copies.hpp"
+#include "render/reference/ray_scene.hpp"
+
+namespace sunfleck {
+namespace detail {
+
+enum class Surface { none, leaf, wood };
+
+// What a ray meets first.
+struct Hit {
+  Surface surface = Surface::none;
+  std::uint32_t leaf = 0;   // of the prototype; when a leaf
+  glm::vec3 position{0.f};  // on the surface; in a periodic stand inside the traced period [m]
+  glm::vec3 normal{0.f};    // unit, geometric, on the side the ray came from
+};
+
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+
+// The prototype's triangles, and the stand of instances of it unless it stands alone.
+struct Scenes {
+  EmbreeScene prototype, instances;
+  RTCScene root() const { return instances ? instances.get() : prototype.get(); }
+};
+
+// A ray that would pass more periods than this without meeting anything is taken to leave the layer of leaves by the
+// face it heads for: it is within 1e-4 (height of the layer / period) of horizontal.
+inline constexpr int kMostPeriods = 10'000;
+
+}  // namespace detail
+
+// Embree's view of a stand. All positions are relative to `origin`.
+struct RayScene::Geometry {
+  Geometry(const TreeMesh& mesh, const Stand& stand, bool with_wood);
+
+  // First surface on the way from `from` along the unit vector `direction`, no farther than `reach` [m], which counts
+  // in stands without period alone.
+  detail::Hit closest(const glm::vec3& from, const glm::vec3& direction, detail::Coherence coherence,
+                      float reach = std::numeric_limits<float>::infinity()) const;
+  // Whether anything stands on that way.
+  bool blocked(const glm::vec3& from, const glm::vec3& direction) const;
+
+  // Start of a ray that leaves a surface on the side `normal` points to. A hit lies on its triangle's plane to within a
+  // few rounding steps of the largest coordinate, so a lift of sixteen steps puts it safely on the right side: no ray
+  // meets again the flat leaf it leaves, be it one triangle or many, and none is lost where leaves touch. The lift is
+  // 2 um in a tree of 1 m and 25 um in a stand of 25 m, thinner than a leaf; as coordinates are taken about the stand's
+  // middle, it does not grow with the distance from the world's origin. A ray that turns straight back (the hot spot)
+  // comes off its old way by less than that.
+  glm::vec3 leave(const glm::vec3& position, const glm::vec3& normal) const { return position + lift * normal; }
+
+  glm::vec3 wrapped(glm::vec3 point) const;  // the same point in the traced period
+  RTCScene countingScene() const;            // leaves alone, watertight, with filters; made when first asked for
+
+  std::string embree_error;  // the first that Embree reported
+  detail::Device device;
+  detail::Scenes scenes;
+  mutable detail::Scenes counting;
+  mutable std::once_flag counting_made;
+
+  glm::vec3 origin{0.f};             // of all other coordinates here, in the stand's [m]
+  std::vector<detail::Copy> copies;  // by Embree's instance number
+  std::vector<glm::vec4> planes;     // per triangle of the prototype, leaves first: unit normal n, and n . x on it [m]
+  std::vector<std::uint32_t> leaf_of_triangle;
+  std::uint32_t leaf_count = 0;
+  std::size_t trees = 0;            // placements, without their periodic copies
+  std::optional<glm::vec2> period;  // [m]
+  Bounds stand_box;                 // what RayScene::box tells, in the stand's coordinates
+  Bounds box;                       // the same about `origin`
+  float lift = 0.f;                 // [m]
+  float low = 0.f, high = 0.f;      // z of a layer that holds everything with room for lifted points [m]
+
+ private:
+  void checkEmbree() const;  // throws std::runtime_error if Embree has reported an error
+  detail::Scenes commit(detail::EmbreeScene prototype, RTCSceneFlags flags) const;
+  detail::Hit describe(const RTCRayHit& ray) const;
+  detail::Hit closestInPeriods(glm::vec3 point, const glm::vec3& direction, detail::Coherence coherence) const;
+  bool blockedInPeriods(glm::vec3 point, const glm::vec3& direction) const;
+  bool enterLayer(glm::vec3& point, const glm::vec3& direction) const;
+};
+
+}  // namespace sunfleck

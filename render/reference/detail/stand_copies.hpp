@@ -1,0 +1,34 @@
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "core/bounds.hpp"
+#include "core/stand.hpp"
+#include "core/tree_mesh.hpp"
+
+namespace sunfleck::detail {
+
+// A copy of the prototype: rotated about z, then moved.
+struct Copy {
+  glm::vec3 translation{0.f};      // [m]
+  float cosine = 1.f, sine = 0.f;  // of the rotation
+
+  glm::vec3 rotated(const glm::vec3& v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z}; }
+};
+
+// The copies rays can meet, in coordinates whose origin lies at `origin` of the stand's: near the middle, so that
+// rounding does not depend on where in the world the stand stands.
+struct StandCopies {
+  glm::vec3 origin{0.f};  // [m]
+  std::vector<Copy> copies;
+  Bounds box;  // of all that can be hit, or of one period [m]
+};
+
+// The placements and, in a periodic stand, their copies shifted by whole periods as far as they reach into the period
+// around the stand's middle. Throws InvalidInput as RayScene's constructor does.
+StandCopies standCopies(const TreeMesh& mesh, const Stand& stand, bool with_wood);
+
+}  // namespace sunfleck::detail

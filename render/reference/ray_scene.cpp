@@ -1,0 +1,312 @@
+#include "render/reference/ray_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <tuple>
+
+#include "core/require.hpp"
+#include "render/reference/detail/scene_geometry.hpp"
+
+namespace sunfleck {
+using namespace detail;
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr unsigned kLeaves = 0, kWood = 1;  // Embree's geometry numbers
+
+void keepFirstError(void* text, RTCError code, const char* message) {
+  std::string& error = *static_cast<std::string*>(text);
+  if (error.empty()) error = "Embree error " + std::to_string(code) + ": " + (message ? message : "");
+}
+
+void attachTriangles(RTCDevice device, RTCScene scene, unsigned number, const std::vector<glm::vec3>& vertices,
+                     const std::vector<glm::uvec3>& triangles) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  void* points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                         vertices.size());
+  void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                                          triangles.size());
+  if (points && corners) {
+    std::memcpy(points, vertices.data(), vertices.size() * sizeof(glm::vec3));
+    std::memcpy(corners, triangles.data(), triangles.size() * sizeof(glm::uvec3));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, number);
+  }
+  rtcReleaseGeometry(geometry);
+}
+
+void attachInstance(RTCDevice device, RTCScene scene, unsigned number, RTCScene of, const Copy& copy) {
+  RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(instance, of);
+  rtcSetGeometryTimeStepCount(instance, 1);
+  const glm::vec3& t = copy.translation;
+  const float columns[12] = {copy.cosine, copy.sine, 0.f, -copy.sine, copy.cosine, 0.f, 0.f, 0.f, 1.f, t.x, t.y, t.z};
+  rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+  rtcCommitGeometry(instance);
+  rtcAttachGeometryByID(scene, instance, number);
+  rtcReleaseGeometry(instance);
+}
+
+glm::vec4 planeOf(const TreeMesh& mesh, const glm::uvec3& triangle) {
+  const glm::dvec3 a = mesh.vertices[triangle.x];
+  const glm::dvec3 b = mesh.vertices[triangle.y];
+  const glm::dvec3 c = mesh.vertices[triangle.z];
+  const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+  return glm::vec4(glm::dvec4(normal, glm::dot(normal, (a + b + c) / 3.)));
+}
+
+void set(RTCRay& ray, const glm::vec3& from, const glm::vec3& direction, float reach) {
+  ray.org_x = from.x;
+  ray.org_y = from.y;
+  ray.org_z = from.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tnear = 0.f;
+  ray.tfar = reach;
+  ray.time = 0.f;
+  ray.mask = ~0u;
+  ray.id = 0;
+  ray.flags = 0;
+}
+
+RTCRayHit rayFrom(const glm::vec3& from, const glm::vec3& direction, float reach) {
+  RTCRayHit ray;
+  set(ray.ray, from, direction, reach);
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return ray;
+}
+
+// Distance along one axis to the wall the ray heads for.
+float toWall(float position, float direction, float low, float high) {
+  if (direction == 0.f) return kInfinity;
+  return std::max(0.f, ((direction > 0.f ? high : low) - position) / direction);
+}
+
+float largestCoordinate(const Bounds& box) {
+  const glm::vec3 largest = glm::max(glm::abs(box.low), glm::abs(box.high));
+  return std::max({largest.x, largest.y, largest.z});
+}
+
+}  // namespace
+
+RayScene::Geometry::Geometry(const TreeMesh& mesh, const Stand& stand, bool with_wood)
+    : leaf_of_triangle(mesh.leaf_of_triangle), leaf_count(mesh.leaf_count), trees(stand.trees.size()) {
+  StandCopies placed = standCopies(mesh, stand, with_wood);
+  origin = placed.origin;
+  copies = std::move(placed.copies);
+  period = stand.period;
+  stand_box = placed.box;
+  box = {.low = stand_box.low - origin, .high = stand_box.high - origin};
+  // A periodic stand's trees may be larger than its period, and their vertices are as exact as their size allows.
+  Bounds coordinates = box;
+  coordinates.include(bounds(mesh));
+  lift = 16.f * std::numeric_limits<float>::epsilon() * largestCoordinate(coordinates);
+  low = box.low.z - 4.f * lift;
+  high = box.high.z + 4.f * lift;
+
+  device.reset(rtcNewDevice(nullptr));
+  if (!device) throw std::runtime_error("Embree error " + std::to_string(rtcGetDeviceError(nullptr)));
+  rtcSetDeviceErrorFunction(device.get(), keepFirstError, &embree_error);
+
+  EmbreeScene prototype(rtcNewScene(device.get()));
+  attachTriangles(device.get(), prototype.get(), kLeaves, mesh.vertices, mesh.leaf_triangles);
+  for (const glm::uvec3& t : mesh.leaf_triangles) planes.push_back(planeOf(mesh, t));
+  if (with_wood && !mesh.wood_triangles.empty()) {
+    attachTriangles(device.get(), prototype.get(), kWood, mesh.vertices, mesh.wood_triangles);
+    for (const glm::uvec3& t : mesh.wood_triangles) planes.push_back(planeOf(mesh, t));
+  }
+  checkEmbree();
+  scenes = commit(std::move(prototype), RTC_SCENE_FLAG_NONE);
+}
+
+void RayScene::Geometry::checkEmbree() const {
+  if (!embree_error.empty()) throw std::runtime_error(embree_error);
+}
+
+Scenes RayScene::Geometry::commit(EmbreeScene prototype, RTCSceneFlags flags) const {
+  Scenes made{.prototype = std::move(prototype), .instances = nullptr};
+  rtcSetSceneFlags(made.prototype.get(), flags);
+  rtcCommitScene(made.prototype.get());
+  const Copy& first = copies.front();
+  const bool alone =
+      copies.size() == 1 && first.translation == glm::vec3(0.f) && first.sine == 0.f && first.cosine > 0.f;
+  if (!alone) {
+    made.instances.reset(rtcNewScene(device.get()));
+    rtcSetSceneFlags(made.instances.get(), flags);
+    for (std::size_t i = 0; i < copies.size(); ++i)
+      attachInstance(device.get(), made.instances.get(), static_cast<unsigned>(i), made.prototype.get(), copies[i]);
+    rtcCommitScene(made.instances.get());
+  }
+  checkEmbree();
+  return made;
+}
+
+RTCScene RayScene::Geometry::countingScene() const {
+  std::call_once(counting_made, [&] {
+    EmbreeScene leaves(rtcNewScene(device.get()));
+    rtcAttachGeometryByID(leaves.get(), rtcGetGeometry(scenes.prototype.get(), kLeaves), kLeaves);
+    counting = commit(std::move(leaves), RTC_SCENE_FLAG_ROBUST | kFilterPerCall);
+  });
+  return counting.root();
+}
+
+// The point is put back on its triangle's plane, as travel along a long ray rounds more than a plane does.
+Hit RayScene::Geometry::describe(const RTCRayHit& ray) const {
+  const bool leaf = ray.hit.geomID == kLeaves;
+  const glm::vec3 direction(ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z);
+  const glm::vec3 travelled = glm::vec3(ray.ray.org_x, ray.ray.org_y, ray.ray.org_z) + ray.ray.tfar * direction;
+  const glm::vec4& plane = planes[ray.hit.primID + (leaf ? 0 : leaf_of_triangle.size())];
+  glm::vec3 normal(plane);
+  float distance = plane.w;
+  if (ray.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
+    const Copy& copy = copies[ray.hit.instID[0]];
+    normal = copy.rotated(normal);
+    distance += glm::dot(normal, copy.translation);
+  }
+  return {.surface = leaf ? Surface::leaf : Surface::wood,
+          .leaf = leaf ? leaf_of_triangle[ray.hit.primID] : 0,
+          .position = travelled - (glm::dot(normal, travelled) - distance) * normal,
+          .normal = glm::dot(normal, direction) > 0.f ? -normal : normal};
+}
+
+Hit RayScene::Geometry::closest(const glm::vec3& from, const glm::vec3& direction, Coherence coherence,
+                                float reach) const {
+  if (period) return closestInPeriods(from, direction, coherence);
+  RTCRayHit ray = rayFrom(from, direction, reach);
+  closestHit(scenes.root(), ray, coherence);
+  return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? Hit{} : describe(ray);
+}
+
+bool RayScene::Geometry::blocked(const glm::vec3& from, const glm::vec3& direction) const {
+  if (period) return blockedInPeriods(from, direction);
+  RTCRay ray;
+  set(ray, from, direction, kInfinity);
+  anyHit(scenes.root(), ray);
+  return ray.tfar < 0.f;
+}
+
+glm::vec3 RayScene::Geometry::wrapped(glm::vec3 point) const {
+  for (int axis = 0; axis < 2; ++axis) {
+    const float side = (*period)[axis];
+    point[axis] -= side * std::floor((point[axis] - box.low[axis]) / side);
+  }
+  return point;
+}
+
+// Moves a point above or below the layer to where its ray enters it; false if it never does.
+bool RayScene::Geometry::enterLayer(glm::vec3& point, const glm::vec3& direction) const {
+  if (point.z > high || point.z < low) {
+    const float face = point.z > high ? high : low;
+    const float distance = (face - point.z) / direction.z;
+    if (!(distance >= 0.f && distance < kInfinity)) return false;
+    point += distance * direction;
+    point.z = face;
+  }
+  point = wrapped(point);
+  return true;
+}
+
+namespace {
+
+// Follows a ray through the periods: `segment(point, length)` for each stretch inside one, until it answers true.
+template <typename Segment>
+void throughPeriods(const RayScene::Geometry& scene, glm::vec3 point, const glm::vec3& direction,
+                    const Segment& segment) {
+  for (int passed = 0; passed < kMostPeriods; ++passed) {
+    const float x = toWall(point.x, direction.x, scene.box.low.x, scene.box.high.x);
+    const float y = toWall(point.y, direction.y, scene.box.low.y, scene.box.high.y);
+    const float z = toWall(point.z, direction.z, scene.low, scene.high);
+    const float wall = std::min(x, y);
+    if (segment(point, std::min(wall, z)) || z <= wall) return;
+    point += wall * direction;
+    const int axis = x <= y ? 0 : 1;
+    point[axis] = direction[axis] > 0.f ? scene.box.low[axis] : scene.box.high[axis];
+  }
+}
+
+}  // namespace
+
+Hit RayScene::Geometry::closestInPeriods(glm::vec3 point, const glm::vec3& direction, Coherence coherence) const {
+  Hit hit;
+  if (!enterLayer(point, direction)) return hit;
+  throughPeriods(*this, point, direction, [&](const glm::vec3& from, float length) {
+    RTCRayHit ray = rayFrom(from, direction, length);
+    closestHit(scenes.root(), ray, coherence);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit = describe(ray);
+    return true;
+  });
+  return hit;
+}
+
+bool RayScene::Geometry::blockedInPeriods(glm::vec3 point, const glm::vec3& direction) const {
+  bool found = false;
+  if (!enterLayer(point, direction)) return found;
+  throughPeriods(*this, point, direction, [&](const glm::vec3& from, float length) {
+    RTCRay ray;
+    set(ray, from, direction, length);
+    anyHit(scenes.root(), ray);
+    return found = ray.tfar < 0.f;
+  });
+  return found;
+}
+
+namespace {
+
+struct LeafCrossing {
+  float distance;
+  std::uint32_t copy, leaf;
+};
+
+struct Counting {
+  EmbreeContext context;  // first, so that the filter finds the rest from it
+  const RayScene::Geometry* scene;
+  std::vector<LeafCrossing>* crossings;
+};
+
+void noteAndReject(const RTCFilterFunctionNArguments* arguments) {
+  const Counting& counting = *reinterpret_cast<const Counting*>(arguments->context);
+  const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
+  counting.crossings->push_back({RTCRayN_tfar(arguments->ray, arguments->N, 0),
+                                 RTCHitN_instID(arguments->hit, arguments->N, 0, 0),
+                                 counting.scene->leaf_of_triangle[triangle]});
+  arguments->valid[0] = 0;
+}
+
+}  // namespace
+
+RayScene::RayScene(const TreeMesh& mesh, const Stand& stand, bool with_wood)
+    : geometry_(std::make_unique<Geometry>(mesh, stand, with_wood)) {}
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+const Bounds& RayScene::box() const {
+  return geometry_->stand_box;
+}
+
+int RayScene::crossings(glm::vec3 from, glm::vec3 direction) const {
+  if (geometry_->period) throw InvalidInput("leaf crossings on a line: the stand must not be periodic");
+  std::vector<LeafCrossing> crossings;
+  Counting counting{.context = {}, .scene = geometry_.get(), .crossings = &crossings};
+  initialise(counting.context);
+  const glm::vec3 unit = glm::normalize(direction);
+  RTCRayHit ray = rayFrom(from - geometry_->origin, unit, kInfinity);
+  filterHits(geometry_->countingScene(), ray, counting.context, noteAndReject);
+
+  // Watertight tracing finds a line that meets a shared edge at least once, perhaps in both triangles: at the same
+  // distance but for rounding, which the lift bounds.
+  std::sort(crossings.begin(), crossings.end(), [](const LeafCrossing& a, const LeafCrossing& b) {
+    return std::tie(a.copy, a.leaf, a.distance) < std::tie(b.copy, b.leaf, b.distance);
+  });
+  const auto same = [&](const LeafCrossing& a, const LeafCrossing& b) {
+    return a.copy == b.copy && a.leaf == b.leaf && b.distance - a.distance <= geometry_->lift;
+  };
+  return static_cast<int>(std::unique(crossings.begin(), crossings.end(), same) - crossings.begin());
+}
+
+}  // namespace sunfleck
