@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "apps/commands.hpp"
+#include "core/whole_file.hpp"
+#include "grid/deep_opacity_map.hpp"
+#include "grid/leaf_depth.hpp"
+#include "plants/import.hpp"
+#include "plants/species.hpp"
+#include "plants/weber_penn.hpp"
+#include "plants/write_obj.hpp"
+
+namespace sunfleck::apps {
+namespace {
+
+struct PlantOptions {
+  std::string input, species = "cherry", output, up = "z";
+  ImportRules rules;
+};
+
+struct Crown {
+  double projected_area;              // of the crown on the ground [m^2]
+  double mean_depth, mean_thickness;  // of the leaves, light from overhead [1]
+};
+
+Crown crownOf(const TreeMesh& mesh) {
+  const DeepOpacityMap overhead(mesh, {0.f, 0.f, -1.f}, 512);
+  std::size_t covered = 0;
+  for (std::size_t pixel = 0; pixel + 1 < overhead.first().size(); ++pixel)
+    covered += overhead.first()[pixel + 1] > overhead.first()[pixel];
+  const LeafDepths depths = leafDepths(mesh, overhead, {});
+  const auto mean = [](const std::vector<float>& v) {
+    return std::accumulate(v.begin(), v.end(), 0.) / static_cast<double>(v.size());
+  };
+  const auto pixel = static_cast<double>(overhead.pixelSize());
+  return {static_cast<double>(covered) * pixel * pixel, mean(depths.depth), mean(depths.thickness)};
+}
+
+int runPlant(PlantOptions options, const RunOptions& run) {
+  if (!options.output.empty()) requireWritable(options.output);
+  options.rules.up = options.up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
+  TreeMesh mesh;
+  std::string source, how;
+  Dropped dropped;
+  if (options.input.empty()) {
+    mesh = grow(species(options.species), run.seed);
+    source = fmt::format("{}, seed {}", options.species, run.seed);
+  } else {
+    ImportedTree imported = importTree(options.input, options.rules);
+    mesh = std::move(imported.mesh);
+    dropped = imported.dropped;
+    how = imported.how;
+    source = options.input;
+  }
+  if (!options.output.empty()) writeObj(options.output, mesh);
+
+  const Crown crown = crownOf(mesh);
+  const double area = leafArea(mesh);
+  // Leaves that are all upright cover nothing from above: there is no index then.
+  const double lai = crown.projected_area > 0. ? area / crown.projected_area : 0.;
+  if (run.json) {
+    const nlohmann::ordered_json result{{"leaves", mesh.leaf_count},
+                                        {"leaf_triangles", mesh.leaf_triangles.size()},
+                                        {"leaf_area_m2", area},
+                                        {"wood_triangles", mesh.wood_triangles.size()},
+                                        {"lai", lai},
+                                        {"units", "m"},
+                                        {"mean_depth", crown.mean_depth},
+                                        {"mean_thickness", crown.mean_thickness},
+                                        {"dropped_leaf_triangles", dropped.leaf_triangles},
+                                        {"dropped_wood_triangles", dropped.wood_triangles}};
+    fmt::print("{}\n", result.dump(2));
+    return 0;
+  }
+  const glm::vec3 size = bounds(mesh).size();
+  fmt::print("{}\n", source);
+  if (!how.empty()) fmt::print("  leaf and wood  {}\n", how);
+  fmt::print("  leaves         {} ({} triangles), {:.4g} m2 of one side\n", mesh.leaf_count, mesh.leaf_triangles.size(),
+             area);
+  fmt::print("  wood           {} triangles\n", mesh.wood_triangles.size());
+  if (dropped.leaf_triangles + dropped.wood_triangles > 0)
+    fmt::print("  dropped        {} leaf and {} wood triangles of no area\n", dropped.leaf_triangles,
+               dropped.wood_triangles);
+  fmt::print("  size           {:.3g} x {:.3g} x {:.3g} m\n", size.x, size.y, size.z);
+  fmt::print("  leaf area      {:.3g} times the crown's projection on the ground\n", lai);
+  fmt::print("  from overhead  a leaf lies {:.2f} leaves deep in {:.2f} on average\n", crown.mean_depth,
+             crown.mean_thickness);
+  if (!options.output.empty()) fmt::print("wrote {}\n", options.output);
+  return 0;
+}
+
+}  // namespace
+
+void addPlant(CLI::App& app, RunOptions& options, int& status) {
+  auto plant = std::make_shared<PlantOptions>();
+  CLI::App* command =
+      addCommand(app, options, "plant", "Grow a tree, or read one, and tell its leaves; write it as OBJ");
+  command->add_option("input", plant->input, "A mesh to read (.obj, .ply) instead of growing a tree");
+  command->add_option("--species", plant->species,
+                      fmt::format("What to grow: {} (default cherry); --seed grows another one of it",
+                                  fmt::join(speciesNames(), ", ")));
+  command->add_option("-o,--output", plant->output, "File to write: .obj, with its .mtl beside it");
+  command->add_option("--leaf", plant->rules.leaf,
+                      "Materials or groups of the mesh that are leaves, such as 'leaf*'; '*' takes all");
+  command->add_option("--wood", plant->rules.wood, "Materials or groups of the mesh that are wood");
+  command->add_option("--scale", plant->rules.scale, "Metres per unit of the mesh (default 1)")
+      ->check(numberIn(1e-9, 1e9, "above 0"));
+  command->add_option("--up", plant->up, "Upward axis of the mesh: z or y (default z)")
+      ->check(CLI::IsMember({"z", "y"}));
+  command->callback([plant, &options, &status] { status = runPlant(*plant, options); });
+}
+
+}  // namespace sunfleck::apps

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/commands.hpp"
+#include "apps/pictures.hpp"
+#include "apps/scene_options.hpp"
+#include "apps/terminal.hpp"
+#include "core/require.hpp"
+#include "core/whole_file.hpp"
+#include "render/image_file.hpp"
+
+namespace sunfleck::apps {
+namespace {
+
+struct RenderOptions {
+  SceneOptions scene;
+  CameraOptions camera;
+  GeometryEffort effort{.light_resolution = 1024};
+  std::string model = "sppg", output;
+  float exposure = kExposure;
+};
+
+int runRender(const RenderOptions& options, const RunOptions& run) {
+  requireWritable(options.output);
+  Scene scene = readScene(options.scene);
+  apply(options.camera, scene);
+  if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const StandGeometry stand =
+      standGeometry(scene, options.effort, terminalProgress("opacity maps and cells", run.quiet));
+  const double prepared = seconds();
+  const Model model = options.model == "ss" ? Model::ss : options.model == "spp" ? Model::spp : Model::sppg;
+  const Image image = modelPicture(scene, stand, model);
+  const double shaded = seconds() - prepared;
+  writeImage(options.output, image, options.exposure);
+  if (run.json)
+    fmt::print("{}\n", nlohmann::ordered_json{{"output", options.output},
+                                              {"model", options.model},
+                                              {"width", image.width},
+                                              {"height", image.height},
+                                              {"prepare_seconds", prepared},
+                                              {"shade_seconds", shaded}}
+                           .dump(2));
+  else
+    fmt::print("wrote {}: {} x {}, {}, {:.0f} ms to prepare, {:.0f} ms to draw\n", options.output, image.width,
+               image.height, options.model, 1e3 * prepared, 1e3 * shaded);
+  return 0;
+}
+
+}  // namespace
+
+void addRender(CLI::App& app, RunOptions& options, int& status) {
+  auto render = std::make_shared<RenderOptions>();
+  CLI::App* command =
+      addCommand(app, options, "render", "Draw a scene on the GPU, or without one in software; needs no display");
+  addSceneOptions(*command, render->scene);
+  addCameraOptions(*command, render->camera);
+  command->add_option("-o,--output", render->output, "Picture to write: .exr (radiances) or .png")->required();
+  command
+      ->add_option("--model", render->model,
+                   "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default)")
+      ->check(CLI::IsMember({"ss", "spp", "sppg"}));
+  command->add_option("--exposure", render->exposure, "Factor from radiance to brightness in a .png (default 3)")
+      ->check(numberIn(1e-6, 1e6, "above 0"));
+  command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
+      ->check(numberIn(1., 8192., "a whole number, 1 to 8192"));
+  command->callback([render, &options, &status] { status = runRender(*render, options); });
+}
+
+}  // namespace sunfleck::apps

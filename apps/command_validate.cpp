@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "apps/commands.hpp"
+#include "apps/pictures.hpp"
+#include "apps/scene_options.hpp"
+#include "apps/terminal.hpp"
+#include "apps/version.hpp"
+#include "core/require.hpp"
+#include "core/whole_file.hpp"
+#include "plants/species.hpp"
+#include "render/compare/paper_table.hpp"
+#include "render/compare/report_html.hpp"
+#include "render/compare/report_json.hpp"
+#include "render/compare/validation.hpp"
+#include "render/image_file.hpp"
+#include "render/scene_file.hpp"
+
+namespace sunfleck::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ValidateOptions {
+  SceneOptions scene;
+  CameraOptions camera;
+  GeometryEffort geometry;
+  ValidationEffort effort;
+  double paths = 4e6;
+  int samples = 64;
+  std::string stand = "auto", folder = "sunfleck-report";
+  bool no_pictures = false;
+};
+
+// A lone tree is validated alone and repeated, as in the paper; a scene that says how its trees stand, as it says.
+std::vector<Scene> scenesOf(const ValidateOptions& options, const Scene& given) {
+  const fs::path path(options.scene.scene);
+  const std::vector<std::string> species = speciesNames();
+  const bool lone = std::find(species.begin(), species.end(), options.scene.scene) != species.end() ||
+                    (path.has_extension() && path.extension() != ".toml");
+  const std::string stand = options.stand != "auto" ? options.stand
+                            : lone                  ? (given.stand.period ? "periodic" : "both")
+                                                    : "given";
+  if (stand == "given") return {given};
+  Scene single = given, periodic = given;
+  single.stand = Stand{};
+  periodic.stand = {.period = given.stand.period.value_or(touchingPeriod(*given.tree))};
+  if (stand == "single") return {single};
+  if (stand == "periodic") return {periodic};
+  return {single, periodic};
+}
+
+void makeFolder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) throw InvalidInput(folder.string() + ": cannot be made: " + failure.message());
+  requireWritable(folder / "report.html");
+}
+
+std::string kindOf(const Scene& scene) {
+  if (scene.stand.period) return "periodic";
+  return scene.stand.trees.size() == 1 ? "single tree" : fmt::format("{} trees", scene.stand.trees.size());
+}
+
+// Ours and the paper's Table 3. Its tree is a cherry too, but not this one.
+std::string table(std::span<const Validation> validations) {
+  const Validation& first = validations.front();
+  std::string text =
+      fmt::format("{}: {} leaves ({} triangles), {:.4g} m2, albedo {:.3g}, sun {:.3g} degrees from the zenith\n",
+                  first.scene.name, first.scene.tree->leaf_count, first.scene.tree->leaf_triangles.size(),
+                  first.leaf_area, first.optics().albedo(), first.scene.sun_zenith * 57.29578f);
+  for (const Validation& v : validations) {
+    text += fmt::format("\n{:<12} RMS error against Monte Carlo, mean depth {:.2f} in {:.2f}\n", kindOf(v.scene),
+                        v.mean_depth, v.mean_thickness);
+    text += fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>12}\n", "model", "by category", "paper",
+                        "by leaves", "per leaf", "total light", "time");
+    for (const ModelResult& m : v.models) {
+      const PaperErrors paper = paperErrors(m.model);
+      std::string name = nameOf(m.model);
+      std::transform(name.begin(), name.end(), name.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+      text +=
+          fmt::format("  {:<6} {:>10.1f} % {:>6.3g} % {:>10.1f} % {:>8.1f} % {:>+10.1f} % {:>9.0f} ms\n", name,
+                      100. * m.errors.rms_category, 100. * (v.scene.stand.period ? paper.periodic : paper.single_tree),
+                      100. * m.errors.rms_weighted, 100. * m.errors.rms_leaf, 100. * m.errors.bias,
+                      1e3 * (m.prepare_seconds + m.shade_seconds));
+    }
+    text += fmt::format("  {:<6} {:>12} {:>8} {:>10.2f} % {:>8.1f} % {:>12} {:>10.1f} s   ({:.3g} million paths)\n",
+                        "noise", "", "", 100. * v.category_noise, 100. * v.reference_noise, "", v.reference.seconds,
+                        static_cast<double>(v.reference.paths) * 1e-6);
+    if (v.leaves_left_out > 0)
+      text += fmt::format("  {} leaves are in categories of fewer than 5 and left out of the first and third column\n",
+                          v.leaves_left_out);
+  }
+  return text;
+}
+
+std::vector<ReportPicture> makePictures(const ValidateOptions& options, const RunOptions& run, const Scene& given,
+                                        const StandGeometry& stand) {
+  Scene scene = given;
+  showGround(scene);
+  apply(options.camera, scene);
+  if (!scene.camera) {
+    scene.camera = cameraOf(scene);
+    scene.camera->width = scene.camera->height = 480;
+  }
+  const fs::path folder(options.folder);
+  std::vector<ReportPicture> pictures;
+  const auto keep = [&](const std::string& name, const std::string& caption, const Image& image) {
+    writeImage(folder / (name + ".png"), image, kExposure);
+    writeImage(folder / (name + ".exr"), image, kExposure);
+    pictures.push_back({caption, pngBytes(image, kExposure)});
+  };
+  keep("ss", "SS: light scattered once", modelPicture(scene, stand, Model::ss));
+  keep("spp", "SPP: every leaf in an infinite slab", modelPicture(scene, stand, Model::spp));
+  keep("sppg", "SPPG: the slab compensated for the crown's edge", modelPicture(scene, stand, Model::sppg));
+  const PixelRays pixels = pixelRays(scene);
+  const TraceLight light{.sun = scene.sun(),
+                         .leaf = scene.leaf[static_cast<std::size_t>(options.effort.band)],
+                         .wood_reflectance = scene.wood_reflectance[options.effort.band],
+                         .ground_albedo = scene.ground_albedo[options.effort.band]};
+  const auto paths = static_cast<std::uint64_t>(options.samples) * static_cast<std::uint64_t>(pixels.width) *
+                     static_cast<std::uint64_t>(pixels.height);
+  const CameraResult traced = traceCamera(RayScene(*scene.tree, scene.stand, true), light, pixels, bounds(scene).low.z,
+                                          {.paths = paths, .seed = run.seed, .threads = run.threads},
+                                          terminalProgress("tracing the picture", run.quiet));
+  keep("monte_carlo", "Monte Carlo: the reference", traced.radiance);
+  return pictures;
+}
+
+int runValidate(ValidateOptions& options, const RunOptions& run) {
+  options.effort.trace = {.paths = static_cast<std::uint64_t>(options.paths), .seed = run.seed, .threads = run.threads};
+  const Scene given = readScene(options.scene);
+  makeFolder(options.folder);
+  std::vector<Validation> validations;
+  std::vector<ReportPicture> pictures;
+  for (const Scene& scene : scenesOf(options, given)) {
+    const StandGeometry stand =
+        standGeometry(scene, options.geometry, terminalProgress("opacity maps and cells", run.quiet));
+    validations.push_back(
+        validate(scene, stand, options.effort, terminalProgress("Monte Carlo, " + kindOf(scene), run.quiet)));
+    if (pictures.empty() && !options.no_pictures && !interrupted()) pictures = makePictures(options, run, scene, stand);
+    if (interrupted()) break;
+  }
+  const fs::path folder(options.folder);
+  const std::string json = reportJson(validations, version(), commit());
+  writeWhole(folder / "report.json", json);
+  writeWhole(
+      folder / "report.html",
+      reportHtml(validations, pictures, {.command = run.command_line, .version = version(), .commit = commit()}));
+  if (run.json)
+    fmt::print("{}", json);
+  else
+    fmt::print("{}\nwrote {}\n", table(validations), (folder / "report.html").string());
+  if (interrupted()) fmt::print(stderr, "sunfleck: ended early: the report rests on the paths done\n");
+  return interrupted() ? 1 : 0;
+}
+
+}  // namespace
+
+void addValidate(CLI::App& app, RunOptions& options, int& status) {
+  auto validate = std::make_shared<ValidateOptions>();
+  CLI::App* command =
+      addCommand(app, options, "validate",
+                 "Judge every scattering model by Monte Carlo on a tree; writes report.html, report.json and pictures");
+  addSceneOptions(*command, validate->scene);
+  addCameraOptions(*command, validate->camera);
+  command->add_option("-o,--output", validate->folder, "Folder to write to (default sunfleck-report)");
+  command
+      ->add_option("--stand", validate->stand,
+                   "How the tree stands: single, periodic, both, or given by the scene (default: both for a lone tree, "
+                   "else given)")
+      ->check(CLI::IsMember({"single", "periodic", "both", "given"}));
+  command->add_option("--paths", validate->paths, "Paths of light from the sun (default 4e6)")
+      ->check(numberIn(64., 1e15, "in [64, 1e15]"));
+  command
+      ->add_option("--samples", validate->samples, "Monte Carlo paths through each pixel of the picture (default 64)")
+      ->check(numberIn(1., 1e6, "a whole number, 1 to 1e6"));
+  command
+      ->add_option("--band", validate->effort.band,
+                   "Band of the scene's optics: 0, 1 or 2, red, green or blue (default 0)")
+      ->check(numberIn(0., 2., "0, 1 or 2"));
+  command->add_flag("--with-wood", validate->effort.with_wood,
+                    "Let wood stop light in Monte Carlo; the models know leaves only");
+  command->add_flag("--no-pictures", validate->no_pictures, "Make no pictures");
+  command
+      ->add_option("--map", validate->geometry.light_resolution, "Pixels along the light's opacity map (default 512)")
+      ->check(numberIn(1., 8192., "a whole number, 1 to 8192"));
+  command
+      ->add_option("--directions", validate->geometry.sample_directions,
+                   "Sample directions of the G-factor (default 22)")
+      ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
+  command->add_option("--cells", validate->geometry.cells, "Cells along the longest side of a tree (default 16)")
+      ->check(numberIn(1., 256., "a whole number, 1 to 256"));
+  command->callback([validate, &options, &status] { status = runValidate(*validate, options); });
+}
+
+}  // namespace sunfleck::apps

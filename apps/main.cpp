@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <string_view>
+
+#include "apps/commands.hpp"
+#include "apps/terminal.hpp"
+#include "apps/version.hpp"
+#include "core/require.hpp"
+#include "render/scene_file.hpp"
+
+namespace {
+
+using namespace sunfleck;
+
+constexpr int kWrongInput = 2;
+
+// A user's mistake is told in one line, whatever the message was made of.
+int wrongInput(std::string message) {
+  for (char& c : message)
+    if (c == '\n') c = ' ';
+  fmt::print(stderr, "sunfleck: {}\n", message);
+  return kWrongInput;
+}
+
+std::string commandLine(int count, char** arguments) {
+  std::string line = "sunfleck";
+  for (int i = 1; i < count; ++i) line += std::string(" ") + arguments[i];
+  return line;
+}
+
+bool asksForSceneHelp(int count, char** arguments) {
+  for (int i = 1; i + 1 < count; ++i)
+    if (std::string_view(arguments[i]) == "--help" && std::string_view(arguments[i + 1]) == "scene") return true;
+  return false;
+}
+
+int run(int count, char** arguments) {
+  if (asksForSceneHelp(count, arguments)) {
+    fmt::print("{}", sceneFileHelp());
+    return 0;
+  }
+  CLI::App app(
+      "Sunfleck computes how sunlight scatters in foliage: exactly where that is possible, fast where it must be, and "
+      "with "
+      "a measured error always.\nWithout a command it validates the models on the built-in cherry tree.",
+      "sunfleck");
+  app.set_version_flag("--version", versionText());
+  app.footer(
+      "sunfleck COMMAND --help shows a command's options; sunfleck --help scene, every key of a scene file.\n"
+      "Exit status: 0 done; 2 wrong input or usage; 1 anything else.");
+  app.require_subcommand(0, 1);
+  apps::RunOptions options;
+  options.command_line = commandLine(count, arguments);
+  int status = 0;
+  apps::addValidate(app, options, status);
+  apps::addSlab(app, options, status);
+  apps::addPlant(app, options, status);
+  apps::addVoxelize(app, options, status);
+  apps::addTrace(app, options, status);
+  apps::addRender(app, options, status);
+  try {
+    if (count == 1)
+      app.parse(std::string("validate"));
+    else
+      app.parse(count, arguments);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);  // help and version
+    return wrongInput(std::string(e.what()) + " (see: sunfleck --help)");
+  }
+  return status;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  apps::catchInterrupts();
+  try {
+    return run(count, arguments);
+  } catch (const sunfleck::InvalidInput& e) {
+    return wrongInput(e.what());
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "sunfleck: failed: {}\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <glm/geometric.hpp>
+
+#include "core/image.hpp"
+#include "render/leaf_models.hpp"
+#include "render/reference/camera_trace.hpp"
+#include "render/scene.hpp"
+#include "render/stand_geometry.hpp"
+
+namespace sunfleck::apps {
+
+// Brings a leaf in full sun to about the middle of the display's range.
+inline constexpr float kExposure = 3.f;
+
+// Lets a picture stand on a ground that shows its shadows: one that reflects a sixth of the light.
+void showGround(Scene& scene);
+
+// The scene shaded by a model on the GPU; `stand` is standGeometry() of it.
+Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model);
+
+// The rays of the scene's camera.
+PixelRays pixelRays(const Scene& scene);
+
+}  // namespace sunfleck::apps

@@ -1,0 +1,43 @@
+#include "apps/run_options.hpp"
+
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <optional>
+
+namespace sunfleck::apps {
+
+CLI::Validator numberIn(double low, double high, const std::string& rule) {
+  return CLI::Validator(
+      [=](const std::string& text) -> std::string {
+        double value = 0.;
+        const bool ok = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= low && value <= high;
+        return ok ? std::string() : text + ": must be " + rule;
+      },
+      "");
+}
+
+namespace {
+
+void limitThreads(int threads) {
+  static std::optional<tbb::global_control> limit;
+  if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+}
+
+}  // namespace
+
+CLI::App* addCommand(CLI::App& app, RunOptions& options, const std::string& name, const std::string& about) {
+  CLI::App* command = app.add_subcommand(name, about);
+  command->add_flag("--json", options.json, "Print results as JSON")->group("Common");
+  command->add_flag("--quiet", options.quiet, "Show no progress")->group("Common");
+  command->add_option("--threads", options.threads, "Number of threads; 0 takes all cores. Results do not depend on it")
+      ->check(numberIn(0, 1024, "a whole number, 0 to 1024"))
+      ->group("Common");
+  command->add_option("--seed", options.seed, "Seed of the random numbers (default 1)")
+      ->check(numberIn(0, 1e18, "a whole number, 0 to 1e18"))
+      ->group("Common");
+  command->parse_complete_callback([&options] { limitThreads(options.threads); });
+  return command;
+}
+
+}  // namespace sunfleck::apps

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+namespace sunfleck::apps {
+
+// What every command takes.
+struct RunOptions {
+  bool json = false;         // machine-readable results on stdout
+  bool quiet = false;        // no progress
+  int threads = 0;           // 0: all cores
+  std::uint64_t seed = 1;    // of random numbers
+  std::string command_line;  // as typed, for reports
+};
+
+// A command line check: a finite number in [low, high], or the message "must be <rule>".
+CLI::Validator numberIn(double low, double high, const std::string& rule);
+
+// Adds a command to `app` and gives it the options of RunOptions.
+CLI::App* addCommand(CLI::App& app, RunOptions& options, const std::string& name, const std::string& about);
+
+}  // namespace sunfleck::apps

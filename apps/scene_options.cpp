@@ -1,0 +1,94 @@
+#include "apps/scene_options.hpp"
+
+#include <fmt/format.h>
+
+#include <glm/trigonometric.hpp>
+
+#include "render/scene_file.hpp"
+
+namespace sunfleck::apps {
+
+void addSceneOptions(CLI::App& command, SceneOptions& options) {
+  command.add_option("scene", options.scene,
+                     "A scene (.toml, see: sunfleck --help scene), a mesh (.obj, .ply) or a built-in scene: a species "
+                     "(cherry, maple, ...), with 1, 16 or 64 for as many trees, periodic, slab (default cherry)");
+  const std::string group = "Scene";
+  command
+      .add_option("--albedo", options.albedo,
+                  "Share of light that leaves scatter, half of it reflected; overrides the scene's optics")
+      ->check(numberIn(0., 1., "in [0, 1]"))
+      ->group(group);
+  command.add_option("--sun-zenith", options.sun_zenith_deg, "Angle of the sun from overhead, in degrees")
+      ->check(numberIn(0., 89.9, "in [0, 89.9] degrees"))
+      ->group(group);
+  command.add_option("--sun-azimuth", options.sun_azimuth_deg, "Where the sun stands, in degrees from +x towards +y")
+      ->check(numberIn(-360., 360., "in [-360, 360] degrees"))
+      ->group(group);
+  command
+      .add_option("--period", options.period, "Repeat the stand without end on a rectangle with these sides, in metres")
+      ->expected(2)
+      ->check(numberIn(1e-6, 1e6, "above 0 m, at most 1e6"))
+      ->group(group);
+  command
+      .add_option("--leaf", options.leaf,
+                  "Materials or groups of a mesh that are leaves, such as 'leaf*'; '*' takes all")
+      ->group(group);
+  command.add_option("--wood", options.wood, "Materials or groups of a mesh that are wood")->group(group);
+  command.add_option("--scale", options.scale, "Metres per unit of the mesh (default 1)")
+      ->check(numberIn(1e-9, 1e9, "above 0"))
+      ->group(group);
+  command.add_option("--up", options.up, "Upward axis of the mesh: z or y (default z)")
+      ->check(CLI::IsMember({"z", "y"}))
+      ->group(group);
+}
+
+Scene readScene(const SceneOptions& options) {
+  ImportRules rules;
+  rules.leaf = options.leaf;
+  rules.wood = options.wood;
+  rules.scale = options.scale;
+  rules.up = options.up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
+  Scene scene = sunfleck::readScene(options.scene, rules);
+  if (options.albedo) scene.leaf.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
+  if (options.sun_zenith_deg) scene.sun_zenith = glm::radians(*options.sun_zenith_deg);
+  if (options.sun_azimuth_deg) scene.sun_azimuth = glm::radians(*options.sun_azimuth_deg);
+  if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);
+  return scene;
+}
+
+void addCameraOptions(CLI::App& command, CameraOptions& options) {
+  const std::string group = "Camera (orthographic; shows the whole stand unless told otherwise)";
+  command.add_option("--elevation", options.elevation_deg, "Height of the camera above the horizon, in degrees")
+      ->check(numberIn(-90., 90., "in [-90, 90] degrees"))
+      ->group(group);
+  command.add_option("--azimuth", options.azimuth_deg, "Where the camera stands, in degrees from +x towards +y")
+      ->check(numberIn(-360., 360., "in [-360, 360] degrees"))
+      ->group(group);
+  command.add_option("--target", options.target, "Point in the middle of the picture: x y z, in metres")
+      ->expected(3)
+      ->check(numberIn(-1e6, 1e6, "a number of metres"))
+      ->group(group);
+  command.add_option("--half-width", options.half_width, "Half of the picture's width in the scene, in metres")
+      ->check(numberIn(1e-6, 1e6, "above 0 m"))
+      ->group(group);
+  command.add_option("--size", options.size, "Width and height of the picture, in pixels")
+      ->expected(2)
+      ->check(numberIn(1., 16384., "a whole number, 1 to 16384"))
+      ->group(group);
+}
+
+void apply(const CameraOptions& options, Scene& scene) {
+  if (!options.given()) return;
+  Camera camera = cameraOf(scene);
+  if (options.elevation_deg) camera.elevation = glm::radians(*options.elevation_deg);
+  if (options.azimuth_deg) camera.azimuth = glm::radians(*options.azimuth_deg);
+  if (options.half_width) camera.half_width = *options.half_width;
+  if (options.target) camera.target = {(*options.target)[0], (*options.target)[1], (*options.target)[2]};
+  if (options.size) {
+    camera.width = (*options.size)[0];
+    camera.height = (*options.size)[1];
+  }
+  scene.camera = camera;
+}
+
+}  // namespace sunfleck::apps

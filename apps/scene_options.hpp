@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/run_options.hpp"
+#include "plants/import.hpp"
+#include "render/scene.hpp"
+
+namespace sunfleck::apps {
+
+// The scene a command works on, and what the command line changes in it.
+struct SceneOptions {
+  std::string scene = "cherry";
+  std::vector<std::string> leaf, wood;  // patterns for mesh files
+  float scale = 1.f;
+  std::string up = "z";
+  std::optional<float> albedo;  // reflectance = transmittance = albedo / 2 in all bands
+  std::optional<float> sun_zenith_deg, sun_azimuth_deg;
+  std::optional<std::vector<float>> period;
+};
+void addSceneOptions(CLI::App& command, SceneOptions& options);
+Scene readScene(const SceneOptions& options);
+
+// The camera, as far as the command line changes it.
+struct CameraOptions {
+  std::optional<float> elevation_deg, azimuth_deg, half_width;
+  std::optional<std::vector<float>> target;
+  std::optional<std::vector<int>> size;
+  bool given() const { return elevation_deg || azimuth_deg || half_width || target || size; }
+};
+void addCameraOptions(CLI::App& command, CameraOptions& options);
+void apply(const CameraOptions& options, Scene& scene);
+
+}  // namespace sunfleck::apps

@@ -1,0 +1,72 @@
+#include "render/compare/validation.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "core/require.hpp"
+
+namespace sunfleck {
+namespace {
+
+double mean(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
+}
+
+// Noise of category means adds in squares over their leaves.
+double categoryNoise(const ForwardResult& reference, std::span<const Category> categories) {
+  double variance = 0., squares = 0.;
+  for (const Category& category : categories) {
+    double sum = 0., sum_variance = 0.;
+    for (const std::uint32_t leaf : category.leaves) {
+      sum += reference.leaf_irradiance[leaf];
+      sum_variance += reference.leaf_standard_error[leaf] * reference.leaf_standard_error[leaf];
+    }
+    const auto n = static_cast<double>(category.leaves.size());
+    variance += sum_variance / n;
+    squares += sum * sum / n;
+  }
+  return squares > 0. ? std::sqrt(variance / squares) : 0.;
+}
+
+}  // namespace
+
+Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
+                    const Progress& progress) {
+  const auto band = effort.band;
+  require(scene.ground_albedo[band] == 0.f, "ground albedo", scene.ground_albedo[band],
+          "0 for validation: the models know no ground");
+  Validation result{.scene = scene, .effort = effort};
+  const LeafGeometry geometry = leafGeometry(scene, stand);
+  result.depths = meanDepths(geometry);
+  result.mean_depth = mean(result.depths.depth);
+  result.mean_thickness = mean(result.depths.thickness);
+  result.leaf_area = leafArea(*scene.tree);
+
+  const RayScene rays(*scene.tree, scene.stand, effort.with_wood);
+  const TraceLight light{.sun = scene.sun(),
+                         .leaf = result.optics(),
+                         .wood_reflectance = scene.wood_reflectance[band],
+                         .ground_albedo = 0.f};
+  result.reference = traceForward(rays, *scene.tree, light, effort.trace, progress);
+  result.reference_noise = referenceNoise(result.reference.leaf_irradiance, result.reference.leaf_standard_error);
+
+  result.categories = categories(result.depths);
+  result.leaves_left_out = scene.tree->leaf_count;
+  for (const Category& category : result.categories) result.leaves_left_out -= category.leaves.size();
+  result.category_noise = categoryNoise(result.reference, result.categories);
+
+  for (const Model model : kModels) {
+    ModelResult& of_model = result.models.emplace_back();
+    of_model.model = model;
+    const auto start = std::chrono::steady_clock::now();
+    of_model.irradiance = leafIrradiance(model, geometry, result.optics());
+    of_model.shade_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    of_model.prepare_seconds =
+        stand.light_seconds + geometry.depth_seconds + (model == Model::sppg ? stand.compensation_seconds : 0.);
+    of_model.errors = modelErrors(of_model.irradiance, result.reference.leaf_irradiance, result.categories);
+  }
+  return result;
+}
+
+}  // namespace sunfleck

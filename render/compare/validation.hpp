@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/image.hpp"
+#include "core/progress.hpp"
+#include "render/compare/category_errors.hpp"
+#include "render/leaf_models.hpp"
+#include "render/reference/forward_trace.hpp"
+#include "render/scene.hpp"
+
+namespace sunfleck {
+
+struct ValidationEffort {
+  TraceEffort trace{.paths = 4'000'000};
+  bool with_wood = false;  // whether wood stops light in the reference; the models know leaves only
+  int band = 0;            // of the scene's optics, 0 .. kBands - 1
+};
+
+struct ModelResult {
+  Model model = Model::ss;
+  std::vector<float> irradiance;  // of each leaf [1]
+  ModelErrors errors;
+  double prepare_seconds = 0.;  // once per placement of trees and light
+  double shade_seconds = 0.;    // all leaves
+};
+
+// Every model against Monte Carlo on one scene.
+struct Validation {
+  Scene scene;
+  ValidationEffort effort;
+  LeafDepths depths;                            // mean over the stand's trees
+  double mean_depth = 0., mean_thickness = 0.;  // over leaves [1]
+  double leaf_area = 0.;                        // one-sided, of the prototype [m^2]
+  ForwardResult reference;
+  double reference_noise = 0.;  // see referenceNoise()
+  double category_noise = 0.;   // expected rms_weighted of a perfect model, from the reference's standard errors
+  std::vector<Category> categories;
+  std::size_t leaves_left_out = 0;  // in categories of fewer than 5
+  std::vector<ModelResult> models;
+
+  LeafOptics optics() const { return scene.leaf[static_cast<std::size_t>(effort.band)]; }
+};
+
+// `stand` is standGeometry() of the scene. Throws InvalidInput when the ground reflects: the models know no ground.
+Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
+                    const Progress& progress = {});
+
+}  // namespace sunfleck

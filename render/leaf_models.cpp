@@ -1,0 +1,87 @@
+#include "render/leaf_models.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+
+#include "grid/instance_cells.hpp"
+#include "spp/slab.hpp"
+
+namespace sunfleck {
+namespace {
+
+constexpr float kMu0 = 1.f;  // the slab's normal is the light's axis
+// Leaves of all orientations send as much on into the light's forward half as back when reflectance = transmittance;
+// METHOD and the paper take the phase function as isotropic.
+constexpr float kForwardShare = 0.5f;
+
+float irradianceOf(Model model, float projection, float depth, float thickness, float compensation, float albedo) {
+  const float direct = spp::directPower(depth, kMu0);
+  if (model == Model::ss) return spp::leafIrradiance(projection, direct, {.down = direct, .up = 0.f});
+  const spp::SlabPowers slab = spp::sppPowers(depth, thickness, kMu0, albedo, kForwardShare);
+  const float g = model == Model::sppg ? compensation : 1.f;
+  return spp::leafIrradiance(projection, direct, spp::compensated(slab, direct, g));
+}
+
+}  // namespace
+
+std::string nameOf(Model model) {
+  switch (model) {
+    case Model::ss:
+      return "ss";
+    case Model::spp:
+      return "spp";
+    case Model::sppg:
+      return "sppg";
+  }
+  return {};
+}
+
+LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand) {
+  const TreeMesh& mesh = *scene.tree;
+  const auto start = std::chrono::steady_clock::now();
+  LeafGeometry geometry;
+  geometry.projections = leafProjections(mesh, scene.sun());
+  const std::size_t trees = scene.stand.trees.size();
+  geometry.depths.resize(trees);
+  tbb::parallel_for(std::size_t{0}, trees, [&](std::size_t tree) {
+    geometry.depths[tree] = leafDepths(mesh, stand.light, stand.neighbours[tree]);
+  });
+  const std::vector<glm::vec3> centres = leafCentres(mesh);
+  for (const std::vector<float>& of_cells : stand.compensation) {
+    std::vector<float>& of_leaves = geometry.compensation.emplace_back();
+    of_leaves.reserve(centres.size());
+    for (const glm::vec3& centre : centres) of_leaves.push_back(interpolate(stand.cells, of_cells, centre));
+  }
+  geometry.depth_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return geometry;
+}
+
+std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, const LeafOptics& optics) {
+  const std::size_t trees = geometry.depths.size();
+  std::vector<float> irradiance(geometry.projections.size());
+  tbb::parallel_for(std::size_t{0}, irradiance.size(), [&](std::size_t leaf) {
+    float sum = 0.f;
+    for (std::size_t tree = 0; tree < trees; ++tree)
+      sum += irradianceOf(model, geometry.projections[leaf], geometry.depths[tree].depth[leaf],
+                          geometry.depths[tree].thickness[leaf], geometry.compensation[tree][leaf], optics.albedo());
+    irradiance[leaf] = sum / static_cast<float>(trees);
+  });
+  return irradiance;
+}
+
+LeafDepths meanDepths(const LeafGeometry& geometry) {
+  LeafDepths mean = geometry.depths.front();
+  const auto trees = static_cast<float>(geometry.depths.size());
+  for (std::size_t leaf = 0; leaf < mean.depth.size(); ++leaf) {
+    for (std::size_t tree = 1; tree < geometry.depths.size(); ++tree) {
+      mean.depth[leaf] += geometry.depths[tree].depth[leaf];
+      mean.thickness[leaf] += geometry.depths[tree].thickness[leaf];
+    }
+    mean.depth[leaf] /= trees;
+    mean.thickness[leaf] /= trees;
+  }
+  return mean;
+}
+
+}  // namespace sunfleck

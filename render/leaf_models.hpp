@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "grid/leaf_depth.hpp"
+#include "render/scene.hpp"
+#include "render/stand_geometry.hpp"
+
+namespace sunfleck {
+
+enum class Model { ss, spp, sppg };
+inline constexpr std::array kModels{Model::ss, Model::spp, Model::sppg};
+std::string nameOf(Model model);
+
+// What the models know of the leaves of each tree of a stand: all that does not depend on leaf optics.
+struct LeafGeometry {
+  std::vector<LeafDepths> depths;                // of each tree
+  std::vector<std::vector<float>> compensation;  // G of each leaf of each tree [1], 0 .. 1
+  std::vector<float> projections;                // |n.s0| of each leaf, the same for all trees [1]
+  double depth_seconds = 0.;                     // wall time for the depths
+};
+LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand);
+
+// (R4) Irradiance of each leaf of the prototype, both sides together per one-sided area, for sun irradiance 1 on a
+// plane facing the sun: the mean over the stand's trees [1].
+std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, const LeafOptics& optics);
+
+// Depth and thickness of each leaf, the mean over the stand's trees.
+LeafDepths meanDepths(const LeafGeometry& geometry);
+
+}  // namespace sunfleck

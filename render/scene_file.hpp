@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "plants/import.hpp"
+#include "render/scene.hpp"
+
+namespace sunfleck {
+
+// Reads a scene: a TOML file, a mesh file (.obj, .ply) that stands alone, or the name of a built-in scene or species.
+// `rules` says how a mesh file that is the scene itself is read; a TOML file brings its own. Throws InvalidInput with
+// file, line and key on anything that is wrong.
+Scene readScene(const std::string& name_or_file, const ImportRules& rules = {});
+
+// Names that readScene() knows without a file.
+std::vector<std::string> builtinScenes();
+
+// Every key of a scene file with its unit, range and default, for people.
+std::string sceneFileHelp();
+
+// Side lengths of the rectangle in which a tree touches its own copies: those of its leaves' box [m].
+glm::vec2 touchingPeriod(const TreeMesh& tree);
+
+}  // namespace sunfleck

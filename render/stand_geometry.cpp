@@ -1,0 +1,40 @@
+#include "render/stand_geometry.hpp"
+
+#include <chrono>
+
+#include "core/require.hpp"
+#include "grid/neighbours.hpp"
+
+namespace sunfleck {
+
+StandGeometry standGeometry(const Scene& scene, const GeometryEffort& effort, const Progress& progress) {
+  for (const Placement& tree : scene.stand.trees)
+    require(tree.rotation == 0.f, "rotation of a tree", tree.rotation,
+            "0 for the models: their maps serve translated copies only (trace takes any)");
+  using Clock = std::chrono::steady_clock;
+  const auto secondsSince = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+
+  const TreeMesh& mesh = *scene.tree;
+  const auto start = Clock::now();
+  StandGeometry stand{.light = DeepOpacityMap(mesh, scene.sun(), effort.light_resolution)};
+  stand.light_seconds = secondsSince(start);
+
+  const auto start_compensation = Clock::now();
+  const std::size_t trees = scene.stand.trees.size();
+  for (std::size_t tree = 0; tree < trees; ++tree)
+    stand.neighbours.push_back(neighbourDisplacements(scene.stand, tree));
+  const std::vector<DeepOpacityMap> maps =
+      deepOpacityMaps(mesh, spreadDirections(effort.sample_directions), effort.sample_resolution);
+  stand.cells = cellGrid(mesh, effort.cells);
+  for (std::size_t tree = 0; tree < trees; ++tree) {
+    const std::vector<float> depths = cellDepths(stand.cells, maps, stand.neighbours[tree]);
+    stand.compensation.push_back(cellCompensation(stand.cells, maps, depths, stand.light, stand.neighbours[tree]));
+    goOn(progress, static_cast<double>(tree + 1) / static_cast<double>(trees));
+  }
+  stand.compensation_seconds = secondsSince(start_compensation);
+  return stand;
+}
+
+}  // namespace sunfleck
