@@ -2,11 +2,13 @@
 
 #include <tiny_obj_loader.h>
 
+#include <cstdint>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <tuple>
 
+#include "core/require.hpp"
 #include "plants/detail/input_file.hpp"
 #include "plants/detail/leaf_or_wood.hpp"
 #include "plants/detail/triangulate.hpp"
@@ -29,7 +31,7 @@ class ObjGatherer {
   std::vector<Part> parts;
   std::vector<std::vector<glm::uvec3>> triangles;  // of each part
 
-  void read(std::istream& text) {
+  void read(std::istream& text, const std::string& source) {
     tinyobj::callback_t callbacks;
     callbacks.vertex_cb = [](void* self, float x, float y, float z, float) { of(self).vertices.emplace_back(x, y, z); };
     callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
@@ -52,6 +54,10 @@ class ObjGatherer {
     tinyobj::LoadObjWithCallback(text, callbacks, this, nullptr, &warning, &error);
     // A face may come before its vertices, so polygons are cut when all are known.
     triangles.resize(parts.size());
+    // checkObj has looked at every index; this guards memory should the two ever read a line differently.
+    for (const std::uint32_t corner : corners_)
+      require(corner < vertices.size(), source + ": vertex index", std::int64_t{corner} + 1,
+              "at most the number of vertices, " + std::to_string(vertices.size()));
     for (const Face& face : waiting_)
       triangulate(vertices, std::span(corners_).subspan(face.first, face.count), triangles[face.part]);
   }
@@ -134,7 +140,7 @@ ImportedTree readObj(const fs::path& path, std::string text, const ImportRules& 
   const Materials materials = readMaterials(path.parent_path(), materialFiles(text));
   std::istringstream stream(std::move(text));
   ObjGatherer gathered;
-  gathered.read(stream);
+  gathered.read(stream, source);
   for (Part& part : gathered.parts)
     if (const auto known = materials.colours.find(part.material); known != materials.colours.end())
       part.colour = known->second;

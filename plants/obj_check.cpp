@@ -23,7 +23,7 @@ std::string_view nextWord(std::string_view& line) {
 }
 
 std::string_view withoutPlus(std::string_view word) {
-  return word.starts_with('+') ? word.substr(1) : word;
+  return word.starts_with('+') && !word.starts_with("+-") ? word.substr(1) : word;
 }
 
 class ObjChecker {
@@ -82,6 +82,9 @@ class ObjChecker {
       const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
       const bool whole = !digits.empty() && end == digits.data() + digits.size();
       if (!whole || failure == std::errc::invalid_argument) refuse("vertex index", word, "a whole number");
+      // tinyobjloader would take what follows a third slash for another corner.
+      if (std::count(word.begin(), word.end(), '/') > 2)
+        refuse("corner", word, "of the form v, v/vt, v//vn or v/vt/vn");
       if (failure != std::errc() || index > std::numeric_limits<int>::max())
         refuse("vertex index", word, "at most the number of vertices");
       if (index == 0) refuse("vertex index", word, "1 or more, or negative to count back");

@@ -12,9 +12,11 @@ namespace {
 
 using Shape = WeberPenn::Shape;
 
-// Hill cherry in blossom, after [TG] hill_cherry, made a young tree. Ours: scale 5.2 (13 there), ratio and splits, the
-// number of twigs and blossoms, and attraction. A leaf is a blossom cluster, a square of 9 cm, so that 9,000 of them
-// (18,000 triangles, as the cherry of Table 3 has) fill the crown as a flowering cherry's do.
+// Hill cherry in blossom, after [TG] hill_cherry, made a young tree. Ours ([TG] in brackets): scale 5.2 +- 0.3 (13 +-
+// 3), ratio 0.02 (0.015), base_splits 1 (0 to 2), splits of the trunk 0.3 (0.5) and its random turns 75 (150), 12 twigs
+// (18), random turns across of twigs 150 (250), 10 blossoms a twig (25), attraction -0.15 (a tropism of its own). A
+// leaf is a blossom cluster, a square of 9 cm, so that 9,000 of them (18,000 triangles, as the cherry of the SPPG
+// paper's Table 3 has) fill the crown as a flowering cherry's do.
 WeberPenn cherry() {
   WeberPenn p;
   p.shape = Shape::hemispherical;
@@ -75,8 +77,9 @@ WeberPenn cherry() {
   return p;
 }
 
-// Japanese maple, after [TG] acer. Ours: scale 6 (the height in [BS] japanese_maple), splits that grow steadily,
-// number of branches and twigs, and leaves of 7 cm.
+// Japanese maple, after [TG] acer. Ours ([TG] in brackets): scale 6 +- 0.5 as in [BS] japanese_maple (10 +- 1),
+// base_splits 2 (0 to 2), base_size 0.2 and 0.2 (0.1 and 0.4), 12 branches (6) of length 0.5 (0.7) with 1 split per
+// segment (1.5), 14 twigs (20) of length 0.35 (0.3) with random turns across, and 16 leaves (30) of 6.5 cm (20 cm).
 WeberPenn maple() {
   WeberPenn p;
   p.shape = Shape::tapered_cylindrical;
@@ -127,7 +130,7 @@ WeberPenn maple() {
   return p;
 }
 
-// Quaking aspen, as [WP] and [AR] have it.
+// Quaking aspen, as [WP] and [AR] have it. Ours: leaves of 8 cm, as the tree has them (17 cm there).
 WeberPenn quakingAspen() {
   WeberPenn p;
   p.shape = Shape::tend_flame;
@@ -167,8 +170,9 @@ WeberPenn quakingAspen() {
   return p;
 }
 
-// California black oak, as [WP] and [AR] have it. Ours: scale_v 2 of 10 ([TG]; the paper's 10 would let a tree have no
-// height), and splits that grow steadily.
+// California black oak, as [WP] and [AR] have it. Ours ([AR] in brackets), so that its leaf area is 7 and not 38 times
+// its ground: scale_v 2 as in [TG] (10, which lets a tree have no height), 24 branches (40), 40 twigs (120) of length
+// 0.3 as in [TG] (0.2), 15 leaves (25).
 WeberPenn blackOak() {
   WeberPenn p;
   p.shape = Shape::hemispherical;

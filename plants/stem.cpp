@@ -52,9 +52,10 @@ void curveSegment(const WeberPenn& parameters, const Bud& bud, Growing& growing,
   if (level.curve_back != 0.f)
     curve = 2. * double{growing.segment < 0.5 * segments ? level.curve : level.curve_back} / segments;
   Frame& tip = growing.tip;
-  if (growing.segment > 0 || bud.level > 0)
+  if (growing.segment > 0 || bud.level > 0) {  // the trunk leaves the ground upright
     tip.turn(tip.right, radians(curve + vary(random, double{level.curve_v}) / segments));
-  tip.turn(tip.up(), radians(vary(random, double{level.bend_v}) / segments));
+    tip.turn(tip.up(), radians(vary(random, double{level.bend_v}) / segments));
+  }
   tip.turn(tip.right, growing.restoring.x);
   tip.turn(tip.up(), growing.restoring.y);
   if (bud.level >= 2 && parameters.attraction_up != 0.f) {
