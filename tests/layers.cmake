@@ -30,7 +30,7 @@ function(configure status_out errors_out name kind folder value)
     file(WRITE "${project}/${part}/${key}.hpp" "#pragma once\n${include_${key}}\n")
   endforeach()
   file(WRITE "${project}/CMakeLists.txt" "${top}")
-  execute_process(COMMAND ${CMAKE_COMMAND} -S "${project}" -B "${project}/build"
+  execute_process(COMMAND ${CMAKE_COMMAND} -G Ninja -S "${project}" -B "${project}/build"
     RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE errors)
   string(REGEX REPLACE "[ \n]+" " " errors "${errors}")
   set(${status_out} "${status}" PARENT_SCOPE)
