@@ -5,7 +5,7 @@
 // The slab's optical depth counts leaf crossings along its normal, from 0 at the lit face to `thickness` at the other.
 // F, the power that arrives through a plane facing the light, is 1.
 //   depth          z      optical depth of the place below the lit face                        [1], 0 .. thickness
-//   thickness      w      optical thickness of the slab; 1e7 and more stand for infinite       [1], > 0
+//   thickness      w      optical thickness of the slab; may be infinite                       [1], > 0
 //   mu0                   |cos| of the light's direction to the slab's normal                  [1], (0, 1]
 //   albedo         omega  share of the light that meets a leaf and is scattered                [1], 0 .. 1
 //   forward_share  T      share of the scattered light that goes on into the forward half      [1], 0 .. 1
@@ -29,7 +29,7 @@ SHARED_FN Number directPower(Number depth, Number mu0) {
 // albedo 1, where its exponent k is 0.
 SHARED_FN SlabPowers sppPowers(Number depth, Number thickness, Number mu0, Number albedo, Number forward_share) {
   Number backward_share = Number(1.0f) - forward_share;
-  Number w = min(thickness, Number(1.0e7f));
+  Number w = min(thickness, Number(1.0e30f));  // as good as infinite, and its products are still numbers
   Number z = min(depth, w);
   Number lost = Number(1.0f) - albedo;
   Number gamma = lost + albedo * backward_share;  // 1 - omega T

@@ -2,7 +2,7 @@
 # Runs the program as a user would: what is right must work, and what is wrong must end with status 2 and one line on
 # stderr, and leave nothing behind. Usage: command_line.sh PATH_TO_SUNFLECK
 set -u
-program=$1
+program=$(readlink -f "$1")
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 cd "$place" || exit 1
