@@ -1,12 +1,16 @@
 #include "grid/detail/vdb_layout.hpp"
 
+#include <openvdb/io/Compression.h>
+#include <zlib.h>
+
 #include <array>
 #include <bit>
 #include <cstring>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
-#include <tuple>
+#include <vector>
 
 #include "core/require.hpp"
 
@@ -179,20 +183,44 @@ class TreeWalk {
       return;
     }
     const std::size_t start = in_.at();
-    Cursor content(in_.take(static_cast<std::uint64_t>(packed), "values"));
-    if ((grid_.compression & kBlosc) == 0) return;
-    // Blosc's header: versions and flags, then the sizes unpacked, of a block, and packed. OpenVDB does not tell Blosc
-    // how many bytes there are.
-    content.take(4, "values");
-    const auto unpacked = content.number<std::uint32_t>("values");
-    content.take(4, "values");
-    if (content.number<std::uint32_t>("values") != static_cast<std::uint64_t>(packed) || unpacked != size)
-      corrupt(start, "size of values");
+    const std::string_view content = in_.take(static_cast<std::uint64_t>(packed), "values");
+    unpacked_.resize(size + 1);  // never without memory
+    if ((grid_.compression & kBlosc) != 0 ? !unpackBlosc(content, size) : !unpackZip(content, size))
+      corrupt(start, "compressed values");
+  }
+
+  // OpenVDB does not heed zip's checksum, and leaks what it has read when a node cannot be unpacked: it is tried here.
+  bool unpackZip(std::string_view content, std::size_t size) {
+    uLongf unpacked = size;
+    return uncompress(reinterpret_cast<Bytef*>(unpacked_.data()), &unpacked,
+                      reinterpret_cast<const Bytef*>(content.data()), content.size()) == Z_OK &&
+           unpacked == size;
+  }
+
+  // Blosc's header: versions and flags, then the sizes unpacked, of a block, and packed. OpenVDB does not tell Blosc
+  // how many bytes there are.
+  bool unpackBlosc(std::string_view content, std::size_t size) {
+    Cursor header(content);
+    header.take(4, "values");
+    const auto unpacked = header.number<std::uint32_t>("values");
+    header.take(4, "values");
+    const auto packed = header.number<std::uint32_t>("values");
+    if (unpacked != size || packed != content.size()) return false;
+    const auto length = static_cast<std::int64_t>(content.size());
+    std::string chunk(reinterpret_cast<const char*>(&length), sizeof length);
+    std::istringstream in(chunk.append(content));
+    try {
+      openvdb::io::bloscFromStream(in, unpacked_.data(), size);
+    } catch (const openvdb::Exception&) {
+      return false;
+    }
+    return true;
   }
 
   Cursor& in_;
   const VdbFloatGrid& grid_;
   std::size_t blocks_ = 0;
+  std::vector<char> unpacked_;
 };
 
 struct Descriptor {
