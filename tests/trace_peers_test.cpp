@@ -102,7 +102,7 @@ TEST(R2_CameraTrace, MatchesOtherTracersOnTheReferenceTree) {
   }
   const TreeMesh mesh = readPly(ply);
   const std::map<std::string, Estimate> reference = readRadiances(kShared / "reference/tree_radiance.csv");
-  const TraceEffort effort{.paths = 1 << 21, .seed = 1};
+  const TraceEffort effort{.paths = 1 << 20, .seed = 1};
 
   const RayScene single(mesh, Stand{}, true);
   EXPECT_TRUE(
@@ -167,7 +167,7 @@ TEST(R1_ForwardTrace, MatchesOtherTracersOnTheReferenceCanopy) {
   }
   ASSERT_EQ(bands.size(), 2u);
   for (const auto& [soil, reference] : bands) {
-    const ForwardResult result = traceForward(scene, mesh, lights[soil], {.paths = 250'000});
+    const ForwardResult result = traceForward(scene, mesh, lights[soil], {.paths = 160'000});
     EXPECT_TRUE(agree(result.reflected, reference.at("reflected"))) << soil;
     EXPECT_TRUE(agree(result.absorbed_leaves, reference.at("absorbed_by_leaves"))) << soil;
     EXPECT_TRUE(agree(result.arriving_ground, reference.at("arriving_at_soil"))) << soil;

@@ -24,7 +24,7 @@ inline constexpr int kTraceBatches = 64;
 struct TraceEffort {
   std::uint64_t paths = 1'000'000;  // >= kTraceBatches, rounded up to whole batches
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: all cores. The result is the same for any number
+  int threads = 0;  // at most; 0: all cores. The result is the same for any number
 };
 
 // Throw InvalidInput on a value out of its range, a sun that does not shine down or is no unit vector.

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <memory>
@@ -33,7 +35,8 @@ void inOrder(std::size_t count, int threads, const Work& work, const Merge& merg
     if (!stopped && !merge(item.number, *item.result)) stopped = true;
   };
   using tbb::filter_mode;
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
   arena.execute([&] {
     tbb::parallel_pipeline(2 * static_cast<std::size_t>(arena.max_concurrency()),
                            tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, number) &

@@ -15,7 +15,7 @@ namespace sunfleck::detail {
 // The faces through which the sun shines into the traced box, and points on them spread evenly by flux.
 class SunlitFaces {
  public:
-  SunlitFaces(const RayScene::Geometry& scene, Direction sun) : sun_(sun) {
+  SunlitFaces(const RayScene::Geometry& scene, Direction sun) {
     // A flat stand still has an inside for the sun to shine into.
     const glm::vec3 size = glm::max(scene.box.size(), glm::vec3(scene.lift));
     for (int axis = 0; axis < 3; ++axis) {
@@ -52,7 +52,6 @@ class SunlitFaces {
     glm::vec3 corner{0.f}, first{0.f}, second{0.f};  // [m]
     double flux = 0.;                                // for sun irradiance 1 [m^2]
   };
-  Direction sun_;
   std::array<Face, 3> faces_;  // across x, y and z
   double flux_ = 0.;
   glm::vec3 start_{0.f};
