@@ -296,6 +296,7 @@ TEST(R3_TreePicture, OfALeafInShadow) {
   const Rectangles one({{kWide.low, kWide.high, 0.f}});
   Scene trees = one.scene();
   trees.stand.trees.push_back({.position = {0.f, 0.f, 1.f}});
+  trees.stand.trees.push_back({.position = {3.f, 0.f, 1.f}});  // its map reaches here, its leaf does not
   const std::vector<float> quarter(8, 0.25f);
   const Camera camera = cameraFrom(-90.f);
   for (const bool as_stand : {false, true}) {
@@ -315,6 +316,19 @@ TEST(R3_TreePicture, OfALeafInShadow) {
       EXPECT_GT(image.values[image.at(2, 2, 1)], 0.005f);
     }
   }
+}
+
+// (R3) Check that it does not matter where a map puts its origin.
+TEST(R3_TreePicture, FollowsTheMapsOrigin) {
+  Rectangles half({{{-2.f, -2.f}, {0.f, 2.f}, 1.f}, {{-2.f, -2.f}, {2.f, 2.f}, 0.f}});
+  const Camera camera = cameraFrom(-90.f, 0.5f * half.map.pixel_size, 8);
+  const Image before = picture(half.scene(), half.map, camera, ShadingModel::spp);
+  half.map.origin = {0.5f, -0.25f, 4.f};
+  half.map.corner += glm::vec2(half.map.origin);
+  for (Crossing& crossing : half.crossings) crossing.depth += half.map.origin.z;
+  for (float& depth : half.wood_depth) depth += half.map.origin.z;
+  const Image after = picture(half.scene(), half.map, camera, ShadingModel::spp);
+  for (std::size_t i = 0; i < before.values.size(); ++i) EXPECT_NEAR(after.values[i], before.values[i], kShading);
 }
 
 // (R3) Check that each tree of a stand reads its own G: 0 in one, 1 in the other, which are far apart.
@@ -392,8 +406,10 @@ TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
   expectRadiance(spp, shadow.x, shadow.y, scene.ground_albedo * passed / kPi, kShading);
   EXPECT_GT(passed.g, 0.05f);
 
-  const std::vector<float> half(8, 0.5f);
-  const gl::CompensationCells cells{.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {half}};
+  // G is 1/2 at the height of the leaf, which sends the light down, and 0 at the ground's.
+  const std::vector<float> half_above{0.f, 0.f, 0.f, 0.f, 0.5f, 0.5f, 0.5f, 0.5f};
+  const gl::CompensationCells cells{
+      .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {half_above}};
   const Image sppg = picture(scene, tree.map, camera, ShadingModel::sppg, cells);
   expectRadiance(sppg, shadow.x, shadow.y, 0.5f * scene.ground_albedo * passed / kPi, kShading);
 
