@@ -56,6 +56,7 @@ void writeExr(const fs::path& named, const fs::path& file, const Image& image) {
   const auto alpha = std::ranges::find(image.channels, "A");
   spec.alpha_channel = alpha == image.channels.end() ? -1 : static_cast<int>(alpha - image.channels.begin());
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");  // else the time of writing: the same picture is to be the same bytes
   if (!out->open(file.string(), spec) || !out->write_image(OIIO::TypeDesc::FLOAT, image.values.data()) || !out->close())
     throw InvalidInput(named.string() + ": cannot be written: " + reason(out.get()));
 }

@@ -10,6 +10,7 @@ out vec3 place;
 flat out vec3 face_normal;
 flat out uint own_leaf;
 flat out uint instance;
+invariant gl_Position;  // the depth pass and the shading pass must meet in the same depths
 
 void main() {
   place = position;

@@ -144,7 +144,7 @@ struct TreeRenderer::Resources {
   VertexArray tree_array, no_array;
   CellBlocks blocks;
   VolumeTexture compensation;
-  Program tree_program, ground_program;
+  Program depth_program, tree_program, ground_program;
 
   Resources(const Context& current, const Scene& scene, const SunMap& sun, const CompensationCells& cells,
             const std::vector<VertexData>& corners)
@@ -163,6 +163,8 @@ struct TreeRenderer::Resources {
         no_array(nullptr),
         blocks(cellBlocks(cells)),
         compensation(blocks.size, blocks.values),
+        depth_program(
+            {shaderOf(Stage::vertex, "render/gl/tree.vert"), shaderOf(Stage::fragment, "render/gl/depth.frag")}),
         tree_program(
             {shaderOf(Stage::vertex, "render/gl/tree.vert"), shaderOf(Stage::fragment, "render/gl/tree.frag")}),
         ground_program(
@@ -201,8 +203,17 @@ struct TreeRenderer::Resources {
       storage->bindStorage(binding++);
     compensation.bind(0);
     tree_array.bind();
+    const auto draw_trees = [&] {
+      glDrawArraysInstanced(GL_TRIANGLES, 0, vertex_count, static_cast<GLsizei>(stand.drawn.size()));
+    };
+    // Shading costs far more than triangles: depth first, so that only what is seen is shaded.
+    glDepthFunc(GL_LESS);
+    depth_program.use();
+    draw_trees();
+    glDepthFunc(GL_EQUAL);
     tree_program.use();
-    glDrawArraysInstanced(GL_TRIANGLES, 0, vertex_count, static_cast<GLsizei>(stand.drawn.size()));
+    draw_trees();
+    glDepthFunc(GL_LESS);
     if (!with_ground) return;
     no_array.bind();
     ground_program.use();

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -28,7 +29,7 @@ VolumeTexture::VolumeTexture(glm::ivec3 size, std::span<const float> values) : n
   glTextureSubImage3D(name, 0, 0, 0, 0, size.x, size.y, size.z, GL_RED, GL_FLOAT, values.data());
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+  for (const GLenum wrap : std::initializer_list<GLenum>{GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
     glTextureParameteri(name, wrap, GL_CLAMP_TO_EDGE);
 }
 
