@@ -55,7 +55,8 @@ gl::SunMap arraysOf(const DeepOpacityMap& map) {
 
 double meanRadiance(const Image& image) {
   double sum = 0.;
-  for (std::size_t i = 0; i < image.values.size(); i += image.channels.size()) sum += static_cast<double>(image.values[i]);
+  for (std::size_t i = 0; i < image.values.size(); i += image.channels.size())
+    sum += static_cast<double>(image.values[i]);
   return sum / (image.width * image.height);
 }
 

@@ -91,7 +91,7 @@ TEST(ImageFile, PngOfOneChannelIsGrey) {
 TEST(ImageFile, RefusesWhatItCannotWrite) {
   const Folder folder;
   for (const fs::path& bad : {folder.path / "a.jpg", folder.path / "a", folder.path / "none" / "a.png",
-                             folder.path / "none" / "a.exr", folder.path}) {
+                              folder.path / "none" / "a.exr", folder.path}) {
     try {
       writeImage(bad, colours(), 1.f);
       FAIL() << bad << " was written";
