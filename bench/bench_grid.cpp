@@ -1,40 +1,25 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <glm/geometric.hpp>
 
-#include "core/random.hpp"
-#include "core/tree_mesh.hpp"
+#include "grid/deep_opacity_map.hpp"
 #include "grid/density_grid.hpp"
+#include "grid/instance_cells.hpp"
+#include "grid/leaf_depth.hpp"
+#include "plants/random_leaves.hpp"
+#include "plants/species.hpp"
+#include "plants/weber_penn.hpp"
 
 using namespace sunfleck;
 
 namespace {
 
-glm::vec3 inUnitBall(Random& random) {
-  for (;;) {
-    const glm::vec3 p = 2.f * glm::vec3(random.uniform(), random.uniform(), random.uniform()) - 1.f;
-    if (glm::dot(p, p) <= 1.f) return p;
-  }
-}
-
 // A round crown of 10 m, filled evenly with square leaves of 5 cm in random directions.
-TreeMesh crown(std::uint32_t leaves) {
-  constexpr float radius = 5.f, half_side = 0.025f;  // [m]
-  TreeMesh mesh;
-  Random random(1, 0);
-  for (std::uint32_t i = 0; i < leaves; ++i) {
-    const glm::vec3 centre = radius * inUnitBall(random) + glm::vec3(0.f, 0.f, 7.f);
-    const glm::vec3 u = half_side * glm::normalize(inUnitBall(random));
-    const glm::vec3 v = half_side * glm::normalize(glm::cross(u, inUnitBall(random)));
-    for (const glm::vec3& corner : {-u - v, u - v, u + v, v - u}) mesh.vertices.push_back(centre + corner);
-    mesh.leaf_triangles.push_back({4 * i, 4 * i + 1, 4 * i + 2});
-    mesh.leaf_triangles.push_back({4 * i, 4 * i + 2, 4 * i + 3});
-  }
-  finish(mesh, "crown");
-  return mesh;
+TreeMesh crown(int leaves) {
+  return randomCrown({.size = glm::vec3(10.f), .leaf_side = 0.05f, .leaves = leaves}, 1);
 }
 
 double peakMegabytes() {
@@ -45,7 +30,7 @@ double peakMegabytes() {
 
 // Leaves into cells; unit: leaf triangles per second of wall time. Arguments: leaves, side of a cell [mm].
 void voxelize(benchmark::State& state) {
-  const TreeMesh mesh = crown(static_cast<std::uint32_t>(state.range(0)));
+  const TreeMesh mesh = crown(static_cast<int>(state.range(0)));
   const float cell_size = static_cast<float>(state.range(1)) * 1e-3f;
   const double before = peakMegabytes();
   const double area = leafArea(mesh);
@@ -70,5 +55,45 @@ BENCHMARK(voxelize)
     ->Args({500'000, 20})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
+
+constexpr int kDirections = 22;  // of the G-factor
+constexpr Direction kDown{0.f, 0.f, -1.f};
+
+// Whether a map's crossings times a pixel's area are the leaves' projected area, to the 1 % that pixels along their
+// edges allow.
+bool holdsProjectedArea(const DeepOpacityMap& map, const TreeMesh& mesh) {
+  const std::vector<float> projections = leafProjections(mesh, map.along());
+  const std::vector<double> areas = leafAreas(mesh);
+  double expected = 0.;
+  for (std::size_t leaf = 0; leaf < areas.size(); ++leaf) expected += areas[leaf] * double{projections[leaf]};
+  const double counted =
+      static_cast<double>(map.crossings().size()) * double{map.pixelSize()} * double{map.pixelSize()};
+  return std::abs(counted - expected) <= 1e-2 * expected;
+}
+
+// The cherry's 22 deep opacity maps of 256 x 256 pixels; unit: maps/s of wall time.
+void opacityMaps(benchmark::State& state) {
+  const TreeMesh mesh = grow(species("cherry"), 1);
+  const std::vector<Direction> directions = spreadDirections(kDirections);
+  for (const DeepOpacityMap& map : deepOpacityMaps(mesh, directions, 256))
+    if (!holdsProjectedArea(map, mesh)) return state.SkipWithError("a map does not hold the area of the leaves");
+  for (auto _ : state) benchmark::DoNotOptimize(deepOpacityMaps(mesh, directions, 256));
+  state.SetItemsProcessed(state.iterations() * kDirections);
+}
+BENCHMARK(opacityMaps)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+// Depths and G of the cherry's 16^3 cells from its maps; unit: active cells/s of wall time.
+void compensation(benchmark::State& state) {
+  const TreeMesh mesh = grow(species("cherry"), 1);
+  const std::vector<DeepOpacityMap> maps = deepOpacityMaps(mesh, spreadDirections(kDirections), 256);
+  const DeepOpacityMap light(mesh, kDown, 512);
+  const CellGrid cells = cellGrid(mesh, 16);
+  const auto g = [&] { return cellCompensation(cells, maps, cellDepths(cells, maps, {}), light, {}); };
+  for (const float value : g())
+    if (!(value >= 0.f && value <= 1.f)) return state.SkipWithError("a G-factor is no share");
+  for (auto _ : state) benchmark::DoNotOptimize(g());
+  state.SetItemsProcessed(state.iterations() * std::count(cells.active.begin(), cells.active.end(), true));
+}
+BENCHMARK(compensation)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -23,7 +23,7 @@ struct LeafGeometry {
 };
 LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand);
 
-// (R4) Irradiance of each leaf of the prototype, both sides together per one-sided area, for sun irradiance 1 on a
+// (R7) Irradiance of each leaf of the prototype, both sides together per one-sided area, for sun irradiance 1 on a
 // plane facing the sun: the mean over the stand's trees [1].
 std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, const LeafOptics& optics);
 
