@@ -18,6 +18,7 @@
 #include "grid/density_grid.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/detail/vdb_layout.hpp"
+#include "grid/detail/vdb_seal.hpp"
 
 namespace sunfleck {
 namespace fs = std::filesystem;
@@ -111,11 +112,16 @@ void DensityGrid::write(const fs::path& file, const std::string& source) const {
   writeWhole(file, [&](const fs::path& temporary) {
     try {
       openvdb::io::File out(temporary.string());
-      // Zip and not Blosc: it keeps a checksum of every block, and its reader is safe with whatever bytes.
-      out.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
+      out.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK);  // densities of single leaves hardly compress further
       out.write(openvdb::GridCPtrVec{describedGrid(*cells_, source)});
       out.close();
-      findFloatGrid(contents(temporary), kName);  // OpenVDB does not tell when the disk is full
+      std::string bytes = contents(temporary);
+      findFloatGrid(bytes, kName);  // OpenVDB does not tell when the disk is full
+      seal(bytes);
+      std::fstream patch(temporary, std::ios::binary | std::ios::in | std::ios::out);
+      patch.write(bytes.data(), static_cast<std::streamsize>(kVdbHeader));
+      patch.close();
+      if (!patch) throw std::runtime_error(std::strerror(errno));
     } catch (const std::exception& error) {
       throw InvalidInput(file.string() + ": cannot be written: " + error.what());
     }
@@ -126,6 +132,7 @@ DensityGrid DensityGrid::read(const fs::path& file) {
   initializeOpenVdb();
   try {
     std::string bytes = contents(file);
+    checkSeal(bytes);
     const VdbFloatGrid grid = findFloatGrid(bytes, kName);
     validateTransform(grid);
     openvdb::FloatTree::Ptr tree = readTree(std::move(bytes), grid);

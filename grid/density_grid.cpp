@@ -27,7 +27,7 @@ Summary summary(const Leaf& leaf) {
     const float value = leaf.getValue(i);
     if (value == 0.f) continue;
     ++found.cells;
-    found.density += double{value};
+    found.density += static_cast<double>(value);
     found.box.expand(leaf.offsetToGlobalCoord(i));
   }
   return found;
@@ -58,7 +58,7 @@ DensityGrid::Cells::Cells(openvdb::FloatTree::Ptr densities, double side, const 
   for (; tile; ++tile) {
     if (*tile == 0.f) continue;
     all.cells += tile.getVoxelCount();
-    all.density += double{*tile} * static_cast<double>(tile.getVoxelCount());
+    all.density += static_cast<double>(*tile) * static_cast<double>(tile.getVoxelCount());
     all.box.expand(tile.getBoundingBox());
   }
 

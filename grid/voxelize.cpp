@@ -89,9 +89,10 @@ void validate(const TreeMesh& mesh, double cell_size) {
   if (box.empty()) throw InvalidInput("the tree has no leaves: at least one is needed for a density");
   double crossings = 0.;
   for (int axis = 0; axis < 3; ++axis) {
-    check(double{box.high[axis]} - double{box.low[axis]} <= kMostCells * cell_size,
+    check(static_cast<double>(box.high[axis]) - static_cast<double>(box.low[axis]) <= kMostCells * cell_size,
           "so large that the tree spans at most 2^20 cells along an axis");
-    check(std::max(std::abs(double{box.low[axis]}), std::abs(double{box.high[axis]})) <= kFarthestCell * cell_size,
+    check(std::max(std::abs(static_cast<double>(box.low[axis])), std::abs(static_cast<double>(box.high[axis]))) <=
+              kFarthestCell * cell_size,
           "so large that the tree lies within 2^30 cells of the origin");
   }
   // A triangle crosses at most as many cells as its three projections cover and its sides pass.
@@ -178,7 +179,7 @@ std::unique_ptr<Leaf> blockDensities(const MeshInCells& mesh, const Visit* begin
 }  // namespace
 
 DensityGrid DensityGrid::voxelize(const TreeMesh& mesh, float cell_size, const Progress& progress) {
-  const double side = double{cell_size};
+  const double side = static_cast<double>(cell_size);
   validate(mesh, side);
   const MeshInCells in_cells(mesh, side);
   const std::vector<Visit> all = visits(in_cells, progress);

@@ -123,14 +123,14 @@ TEST(D1_DensityGridFile, OtherProgramsFindTheLeavesInTheirPlace) {
   EXPECT_TRUE(grid->getCreator().starts_with("Sunfleck "));
   EXPECT_NEAR(grid->metaValue<double>("leaf_area_m2"), leafArea(mesh), 1e-6 * leafArea(mesh));
   EXPECT_TRUE(grid->transform().isLinear());
-  EXPECT_NEAR(grid->transform().voxelSize().y(), double{h}, 1e-12);
-  EXPECT_NEAR(grid->indexToWorld(openvdb::Coord(0)).x(), double{h} / 2., 1e-12);
+  EXPECT_NEAR(grid->transform().voxelSize().y(), static_cast<double>(h), 1e-12);
+  EXPECT_NEAR(grid->indexToWorld(openvdb::Coord(0)).x(), static_cast<double>(h) / 2., 1e-12);
 
   glm::dvec3 of_density(0.), of_leaves(0.);
   double area = 0.;
   for (auto cell = grid->cbeginValueOn(); cell; ++cell) {
     const openvdb::Vec3d centre = grid->indexToWorld(cell.getCoord());
-    const double share = double{*cell} * std::pow(double{h}, 3);
+    const double share = static_cast<double>(*cell) * std::pow(static_cast<double>(h), 3);
     of_density += share * glm::dvec3(centre.x(), centre.y(), centre.z());
     area += share;
   }
@@ -139,7 +139,7 @@ TEST(D1_DensityGridFile, OtherProgramsFindTheLeavesInTheirPlace) {
                  leafArea(mesh);
   of_density /= area;
   for (int axis = 0; axis < 3; ++axis)
-    EXPECT_NEAR(of_density[axis], of_leaves[axis], 5. * double{h} / std::sqrt(12. * leaves));
+    EXPECT_NEAR(of_density[axis], of_leaves[axis], 5. * static_cast<double>(h) / std::sqrt(12. * leaves));
 }
 
 // Check that files of other programs are read, however they keep their values: all compressions, 16-bit floats, tiles,
@@ -176,7 +176,7 @@ TEST(D1_DensityGridFile, ReadsFilesOfOtherPrograms) {
       std::size_t cells = 0;
       for (auto value = grid->tree().cbeginValueAll(); value; ++value)
         if (*value != 0.f) {
-          sum += double{*value} * double(value.getVoxelCount());
+          sum += static_cast<double>(*value) * double(value.getVoxelCount());
           cells += value.getVoxelCount();
           const openvdb::Vec3d centre = grid->indexToWorld(value.getCoord());
           ASSERT_EQ(read.at({float(centre.x()), float(centre.y()), float(centre.z())}), *value);
@@ -280,6 +280,30 @@ TEST(D1_DensityGridFile, RefusesATruncatedFile) {
       writeBytes(file, whole.substr(0, length));
       ASSERT_NE(refusal(file), "") << length << " bytes of " << whole.size();
     }
+  }
+}
+
+// Check that the same leaves make the same file, and that any one wrong byte in it is found: those after the identifier
+// by its checksum, those before it by their rules.
+TEST(D1_DensityGridFile, AnyWrongByteInOurOwnFilesIsFound) {
+  const Folder folder;
+  const fs::path file = folder / "a.vdb";
+  const TreeMesh mesh = randomLeaves(100, .5f, .1f, glm::vec3(2.f));
+  DensityGrid::voxelize(mesh, .1f).write(file, "leaves");
+  const std::string whole = readBytes(file);
+  DensityGrid::voxelize(mesh, .1f).write(file, "leaves");
+  EXPECT_EQ(readBytes(file), whole);
+  Random random(23, 0);
+  for (int repeat = 0; repeat < 300; ++repeat) {
+    std::string bytes = whole;
+    const std::size_t at = 57 + static_cast<std::size_t>(random.bits() % (whole.size() - 57));
+    bytes[at] = static_cast<char>(bytes[at] ^ (1 << (random.bits() % 8)));
+    writeBytes(file, bytes);
+    ASSERT_NE(refusal(file), "") << "byte " << at;
+  }
+  for (std::size_t length = 0; length < whole.size(); length += 1 + length / 10) {
+    writeBytes(file, whole.substr(0, length));
+    ASSERT_NE(refusal(file), "") << length << " bytes";
   }
 }
 
