@@ -93,15 +93,15 @@ TEST(R2_CameraTrace, TwoSheetsMatchAddingDoubling) {
 
 // Check the hot spot: seen along the sun's own direction, every leaf that is seen is lit. Leaves reflect so little that
 // light scattered twice is below 1e-6 of the whole. A leaf's edge may shade what was just seen past it by the lift of
-// rays, 5e-7 m here: 400 edges of 0.7 m of it over 2 m^2 are 1e-4 at the very most; the shadow offsets of 1e-4 of the
-// coordinates that are usual would take 1e-2.
+// rays, 2 um here: 400 edges of 0.65 m over a picture of 4 m^2 are 1e-4 at the most. Shadow offsets of 1e-4 of the
+// coordinates, which are usual, would take 1e-2.
 TEST(R2_CameraTrace, NothingSeenAlongTheSunIsShaded) {
   Random random(9, 0);
   TreeMesh mesh;
   for (int i = 0; i < 400; ++i)
     addPolygon(mesh, mesh.leaf_triangles,
                disc({2.f * random.uniform() - 1.f, random.uniform() - 0.5f, random.uniform()}, {0, 0, 1}, 0.1));
-  addPolygon(mesh, mesh.leaf_triangles, rectangle({0, 0, -0.01f}, {6, 0, 0}, {0, 6, 0}));
+  addPolygon(mesh, mesh.leaf_triangles, rectangle({0, 0, -0.01f}, {2, 0, 0}, {0, 2, 0}));
   finish(mesh, "discs");
   const float zenith = 35.f * kDegree;
   const TraceLight light{.sun = sunlight(zenith, 0.7f), .leaf = {.reflectance = 1e-6f, .transmittance = 0.f}};

@@ -104,7 +104,7 @@ RayScene::Geometry::Geometry(const TreeMesh& mesh, const Stand& stand, bool with
   // A periodic stand's trees may be larger than its period, and their vertices are as exact as their size allows.
   Bounds coordinates = box;
   coordinates.include(bounds(mesh));
-  lift = 16.f * std::numeric_limits<float>::epsilon() * largestCoordinate(coordinates);
+  lift = 8.f * std::numeric_limits<float>::epsilon() * largestCoordinate(coordinates);
   low = box.low.z - 4.f * lift;
   high = box.high.z + 4.f * lift;
 

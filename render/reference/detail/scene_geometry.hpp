@@ -61,12 +61,12 @@ struct RayScene::Geometry {
   // Whether anything stands on that way.
   bool blocked(const glm::vec3& from, const glm::vec3& direction) const;
 
-  // Start of a ray that leaves a surface on the side `normal` points to. A hit lies on its triangle's plane to within a
-  // few rounding steps of the largest coordinate, so a lift of sixteen steps puts it safely on the right side: no ray
-  // meets again the flat leaf it leaves, be it one triangle or many, and none is lost where leaves touch. The lift is
-  // 2 um in a tree of 1 m and 25 um in a stand of 25 m, thinner than a leaf; as coordinates are taken about the stand's
-  // middle, it does not grow with the distance from the world's origin. A ray that turns straight back (the hot spot)
-  // comes off its old way by less than that.
+  // Start of a ray that leaves a surface on the side `normal` points to. A hit lies on its triangle's plane to within
+  // about one rounding step of the largest coordinate, so a lift of eight steps puts it safely on the right side: no
+  // ray meets again the flat leaf it leaves, be it one triangle or many. The lift is 1 um in a tree of 1 m and 12 um in
+  // a stand of 25 m, a tenth of a leaf's thickness; as coordinates are taken about the stand's middle, it does not grow
+  // with the distance from the world's origin. A ray that turns straight back (the hot spot) comes off its old way by
+  // less than that.
   glm::vec3 leave(const glm::vec3& position, const glm::vec3& normal) const { return position + lift * normal; }
 
   glm::vec3 wrapped(glm::vec3 point) const;  // the same point in the traced period
