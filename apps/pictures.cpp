@@ -18,7 +18,9 @@ Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model) 
   return gl::treePicture(scene, data, gl::ShadingModel::sppg);
 }
 
-void showGround(Scene& scene) { scene.ground_albedo = glm::vec3(0.16f); }
+void showGround(Scene& scene) {
+  scene.ground_albedo = glm::vec3(0.16f);
+}
 
 PixelRays pixelRays(const Scene& scene) {
   const Camera camera = cameraOf(scene);

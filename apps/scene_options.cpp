@@ -79,15 +79,16 @@ void addCameraOptions(CLI::App& command, CameraOptions& options) {
 
 void apply(const CameraOptions& options, Scene& scene) {
   if (!options.given()) return;
-  Camera camera = cameraOf(scene);
+  Camera camera = scene.camera.value_or(Camera{});
   if (options.elevation_deg) camera.elevation = glm::radians(*options.elevation_deg);
   if (options.azimuth_deg) camera.azimuth = glm::radians(*options.azimuth_deg);
-  if (options.half_width) camera.half_width = *options.half_width;
-  if (options.target) camera.target = {(*options.target)[0], (*options.target)[1], (*options.target)[2]};
   if (options.size) {
     camera.width = (*options.size)[0];
     camera.height = (*options.size)[1];
   }
+  if (!scene.camera) camera = showingAll(scene, camera);
+  if (options.target) camera.target = {(*options.target)[0], (*options.target)[1], (*options.target)[2]};
+  if (options.half_width) camera.half_width = *options.half_width;
   scene.camera = camera;
 }
 

@@ -3,14 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 namespace sunfleck {
 namespace {
 
-constexpr float kDefaultElevation = 25.f * std::numbers::pi_v<float> / 180.f;  // [rad]
-constexpr float kDefaultAzimuth = 20.f * std::numbers::pi_v<float> / 180.f;    // [rad]
 constexpr float kMargin = 1.08f;  // room around the stand, as a share of its size in the picture
+
+template <typename Visit>
+void forVertices(const TreeMesh& tree, const Visit& visit) {
+  for (const auto* triangles : {&tree.leaf_triangles, &tree.wood_triangles})
+    for (const glm::uvec3& t : *triangles)
+      for (int corner = 0; corner < 3; ++corner) visit(tree.vertices[t[corner]]);
+}
+
+glm::vec3 placed(const glm::vec3& vertex, const Placement& placement, float cosine, float sine) {
+  return placement.position +
+         glm::vec3(cosine * vertex.x - sine * vertex.y, sine * vertex.x + cosine * vertex.y, vertex.z);
+}
 
 Bounds standing(const TreeMesh& tree, const Bounds& prototype, const Placement& placement) {
   Bounds box;
@@ -20,15 +29,7 @@ Bounds standing(const TreeMesh& tree, const Bounds& prototype, const Placement& 
     return box;
   }
   const float cosine = std::cos(placement.rotation), sine = std::sin(placement.rotation);
-  const auto include = [&](const std::vector<glm::uvec3>& triangles) {
-    for (const glm::uvec3& t : triangles)
-      for (int corner = 0; corner < 3; ++corner) {
-        const glm::vec3& v = tree.vertices[t[corner]];
-        box.include(placement.position + glm::vec3(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z));
-      }
-  };
-  include(tree.leaf_triangles);
-  include(tree.wood_triangles);
+  forVertices(tree, [&](const glm::vec3& v) { box.include(placed(v, placement, cosine, sine)); });
   return box;
 }
 
@@ -41,18 +42,26 @@ Bounds bounds(const Scene& scene) {
   return box;
 }
 
-Camera cameraOf(const Scene& scene) {
-  if (scene.camera) return *scene.camera;
-  const Bounds box = bounds(scene);
-  Camera camera{.target = box.centre(), .elevation = kDefaultElevation, .azimuth = kDefaultAzimuth};
+// The picture is as large as what it shows: the trees' vertices, not the corners of their boxes.
+Camera showingAll(const Scene& scene, Camera camera) {
   const Axes axes = viewAxes(camera);
-  const glm::vec3 half_size = 0.5f * box.size();
-  // The farthest corner of a box along an axis: its half size weighed by the axis's components.
-  const float half_width = glm::dot(half_size, glm::abs(axes.right));
-  const float half_height = glm::dot(half_size, glm::abs(axes.up));
+  Bounds seen;  // along right, up and the direction of sight
+  for (const Placement& placement : scene.stand.trees) {
+    const float cosine = std::cos(placement.rotation), sine = std::sin(placement.rotation);
+    forVertices(*scene.tree, [&](const glm::vec3& v) {
+      const glm::vec3 p = placed(v, placement, cosine, sine);
+      seen.include({glm::dot(p, axes.right), glm::dot(p, axes.up), glm::dot(p, axes.along)});
+    });
+  }
+  const glm::vec3 centre = seen.centre(), half_size = 0.5f * seen.size();
+  camera.target = centre.x * axes.right + centre.y * axes.up + centre.z * axes.along;
   const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
-  camera.half_width = kMargin * std::max(half_width, half_height * aspect);
+  camera.half_width = kMargin * std::max({half_size.x, half_size.y * aspect, 1e-6f});
   return camera;
+}
+
+Camera cameraOf(const Scene& scene) {
+  return scene.camera ? *scene.camera : showingAll(scene, {});
 }
 
 Axes viewAxes(const Camera& camera) {

@@ -17,8 +17,8 @@ namespace sunfleck {
 // An orthographic camera that looks at a point.
 struct Camera {
   glm::vec3 target{0.f};          // point in the middle of the picture [m]
-  float elevation = 0.f;          // of the camera as seen from the target [rad], -pi/2 .. pi/2
-  float azimuth = 0.f;            // of the camera as seen from the target, from +x towards +y [rad]
+  float elevation = 0.44f;        // of the camera as seen from the target [rad], -pi/2 .. pi/2
+  float azimuth = 0.35f;          // of the camera as seen from the target, from +x towards +y [rad]
   float half_width = 1.f;         // half of the picture's width in the scene [m], > 0
   int width = 512, height = 512;  // [pixel], > 0
 };
@@ -44,6 +44,8 @@ struct Scene {
 
 Bounds bounds(const Scene& scene);    // of all trees of the stand [m]
 Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
+// The camera moved and widened so that the whole stand fills its picture; direction and pixels stay.
+Camera showingAll(const Scene& scene, Camera camera);
 // Right and up of the picture, and the direction of sight. Seen as people see, right x up points at the eye, so that
 // these axes are left-handed: right x up = -along.
 Axes viewAxes(const Camera& camera);

@@ -98,17 +98,18 @@ void readOptics(Scene& scene, detail::SceneTable leaf, detail::SceneTable wood, 
 }
 
 void readCamera(Scene& scene, detail::SceneTable camera) {
-  Camera read = cameraOf(scene);
+  Camera read;
+  if (camera.has("elevation_deg")) read.elevation = degrees(camera, "elevation_deg", -90., 90., "in [-90, 90]");
+  if (camera.has("azimuth_deg")) read.azimuth = degrees(camera, "azimuth_deg", -360., 360., "in [-360, 360]");
+  read.width = camera.count("width", read.width, 16384);
+  read.height = camera.count("height", read.height, 16384);
+  read = showingAll(scene, read);
   if (camera.has("target")) {
     const auto v = camera.numbers("target", 3, -1e6, 1e6, "three coordinates [m]");
     read.target = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
   }
-  if (camera.has("elevation_deg")) read.elevation = degrees(camera, "elevation_deg", -90., 90., "in [-90, 90]");
-  if (camera.has("azimuth_deg")) read.azimuth = degrees(camera, "azimuth_deg", -360., 360., "in [-360, 360]");
   read.half_width =
       static_cast<float>(camera.number("half_width", static_cast<double>(read.half_width), 1e-6, 1e6, "above 0 m"));
-  read.width = camera.count("width", read.width, 16384);
-  read.height = camera.count("height", read.height, 16384);
   camera.done();
   scene.camera = read;
 }
@@ -137,6 +138,8 @@ Scene readToml(const std::filesystem::path& file) {
   scene.sun_azimuth = degrees(sun, "azimuth_deg", -360., 360., "in [-360, 360]");
   sun.done();
   if (table.contains("camera")) readCamera(scene, section("camera"));
+  if (const toml::node* name = table.get("name"); name && !name->is_string())
+    throw InvalidInput(fmt::format("{}:{}: name: must be a text in quotes", file.string(), name->source().begin.line));
   scene.name = table["name"].value_or(file.stem().string());
   return scene;
 }
@@ -232,8 +235,8 @@ azimuth_deg = 0.0             # where the sun stands, from +x towards +y
 
 [camera]                      # orthographic; shows the whole stand if left out
 # target = [0.0, 0.0, 4.0]    # point in the middle of the picture
-# elevation_deg = 15.0        # -90 to 90
-# azimuth_deg = -60.0         # where the camera stands, from +x towards +y
+# elevation_deg = 25.0        # -90 to 90
+# azimuth_deg = 20.0          # where the camera stands, from +x towards +y
 # half_width = 5.0            # half of the picture's width
 # width = 512                 # pixels, 1 to 16384
 # height = 512

@@ -2,6 +2,8 @@
 
 #include <glm/common.hpp>
 
+#include "grid/neighbours.hpp"
+
 namespace sunfleck::gl {
 namespace {
 
@@ -43,7 +45,7 @@ bool meets(const SunMap& map, glm::vec3 displacement, glm::vec2 centre, glm::vec
 StandInstances standInstances(const Stand& stand, const SunMap& map, const GroundDisc& ground) {
   StandInstances result;
   const std::vector<Neighbour> drawn = treesWithin(stand, 1);
-  const std::vector<Neighbour> all = treesWithin(stand, kFarthestPeriod);
+  const std::vector<Neighbour> all = treesWithin(stand, kPeriodsAround);
 
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (i >= stand.trees.size()) {  // a copy stands in the same light as its tree

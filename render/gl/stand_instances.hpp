@@ -24,13 +24,12 @@ struct Instance {
 
 // (R4) Who is drawn, and who may shade whom: two trees share light when the pictures of their boxes along the sun
 // overlap (Eq. 31's neighbour lists). A periodic stand is drawn with one ring of copies around it; light is shared over
-// at most kFarthestPeriod periods.
+// at most kPeriodsAround periods.
 struct StandInstances {
   std::vector<Instance> drawn;        // trees of the stand first
   Instance ground;                    // its neighbours: all trees whose shadow may fall on the disc
   std::vector<Neighbour> neighbours;  // the first of each drawn tree is that tree itself, displaced by 0
 };
-inline constexpr int kFarthestPeriod = 8;
 
 // The ground's disc [m].
 struct GroundDisc {
