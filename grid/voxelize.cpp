@@ -27,7 +27,7 @@ using Leaf = openvdb::FloatTree::LeafNodeType;  // a block of 8 x 8 x 8 cells
 constexpr double kMostCells = 0x1p20;          // of the tree along an axis
 constexpr double kFarthestCell = 0x1p30;       // from the origin along an axis
 constexpr double kMostCrossings = 0x1p30;      // of triangles and cells: minutes of work
-constexpr std::size_t kMostBlocks = 1u << 22;  // of 2 KiB: 9 GB
+constexpr std::size_t kMostBlocks = 1u << 22;  // of 2 KiB: 8 GiB
 constexpr int kBlock = Leaf::DIM;
 constexpr int kBatches = 16;  // progress is told after each
 
