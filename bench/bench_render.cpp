@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/random.hpp"
 #include "grid/deep_opacity_map.hpp"
+#include "plants/random_leaves.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/tree_renderer.hpp"
 
@@ -16,24 +16,6 @@ using namespace sunfleck;
 using gl::ShadingModel;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-
-// Square leaves of 5 cm at random places and angles of an ellipsoid of 2 x 2 x 3 m: two triangles each.
-TreeMesh crown(int leaves) {
-  TreeMesh mesh;
-  Random random(1, 0);
-  while (static_cast<int>(mesh.leaf_triangles.size()) < 2 * leaves) {
-    const glm::vec3 place = 2.f * glm::vec3(random.uniform(), random.uniform(), random.uniform()) - 1.f;
-    if (glm::dot(place, place) > 1.f) continue;
-    const float z = 2.f * random.uniform() - 1.f, azimuth = 2.f * kPi * random.uniform(), r = std::sqrt(1.f - z * z);
-    const Axes axes = axesAlong({r * std::cos(azimuth), r * std::sin(azimuth), z});
-    const auto corner = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const glm::vec2 at : {glm::vec2(-1.f, -1.f), {1.f, -1.f}, {1.f, 1.f}, {-1.f, 1.f}})
-      mesh.vertices.push_back(place * glm::vec3(1.f, 1.f, 1.5f) + 0.025f * (at.x * axes.right + at.y * axes.up));
-    for (const glm::uvec3 t : {glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)}) mesh.leaf_triangles.push_back(t + corner);
-  }
-  finish(mesh, "crown");
-  return mesh;
-}
 
 Scene sceneOf(TreeMesh mesh) {
   Scene scene;
@@ -63,7 +45,7 @@ double meanRadiance(const Image& image) {
 // One picture of 512 x 512 pixels and 4 samples each, from the camera to floats in memory. G is 1 throughout: its value
 // does not change the time.
 void picture(benchmark::State& state, ShadingModel model) {
-  const Scene scene = sceneOf(crown(9000));
+  const Scene scene = sceneOf(randomCrown({}, 1));
   const DeepOpacityMap map(*scene.tree, scene.sun(), 512);
   const gl::Context context;
   const std::vector<float> ones(16 * 16 * 16, 1.f);

@@ -107,7 +107,7 @@ TEST(D1_DensityGridFile, ReadsBackWhatWasWritten) {
 // mean of these offsets counts: its standard deviation is h / sqrt(12 n) for n leaves, and 5 of them are allowed.
 TEST(D1_DensityGridFile, OtherProgramsFindTheLeavesInTheirPlace) {
   const Folder folder;
-  constexpr std::uint32_t leaves = 2000;
+  constexpr int leaves = 2000;
   const float h = 0.4f;
   const TreeMesh mesh = randomLeaves(leaves, 1.f, .05f, {.3f, -2.f, 4.f});
   DensityGrid::voxelize(mesh, h).write(folder / "a.vdb", "these leaves");

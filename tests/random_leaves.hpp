@@ -1,34 +1,19 @@
 #pragma once
 
-#include <cstdint>
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "core/random.hpp"
 #include "core/tree_mesh.hpp"
 #include "grid/density_grid.hpp"
+#include "plants/random_leaves.hpp"
 
 namespace sunfleck {
 
-inline glm::vec3 inUnitCube(Random& random) {
-  return 2.f * glm::vec3(random.uniform(), random.uniform(), random.uniform()) - 1.f;
-}
-
-// Square leaves of side 2 `half_side` in random directions, in a cube of side 2 `half_width` about `centre` [m].
-inline TreeMesh randomLeaves(std::uint32_t leaves, float half_width, float half_side,
-                             glm::vec3 centre = glm::vec3(0.f)) {
-  TreeMesh mesh;
-  Random random(11, 0);
-  for (std::uint32_t i = 0; i < leaves; ++i) {
-    const glm::vec3 middle = centre + half_width * inUnitCube(random);
-    const glm::vec3 u = half_side * glm::normalize(inUnitCube(random));
-    const glm::vec3 v = half_side * glm::normalize(glm::cross(u, inUnitCube(random)));
-    for (const glm::vec3& corner : {-u - v, u - v, u + v, v - u}) mesh.vertices.push_back(middle + corner);
-    mesh.leaf_triangles.push_back({4 * i, 4 * i + 1, 4 * i + 2});
-    mesh.leaf_triangles.push_back({4 * i, 4 * i + 2, 4 * i + 3});
-  }
-  finish(mesh, "random leaves");
+// Square leaves of side 2 `half_side` in random directions, in a ball of radius `half_width` about `centre` [m].
+inline TreeMesh randomLeaves(int leaves, float half_width, float half_side, glm::vec3 centre = glm::vec3(0.f)) {
+  TreeMesh mesh =
+      randomCrown({.size = glm::vec3(2.f * half_width), .leaf_side = 2.f * half_side, .leaves = leaves}, 11);
+  for (glm::vec3& vertex : mesh.vertices) vertex += centre;
   return mesh;
 }
 
