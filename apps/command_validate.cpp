@@ -102,7 +102,11 @@ std::vector<ReportPicture> makePictures(const ValidateOptions& options, const Ru
   Scene scene = given;
   showGround(scene);
   apply(options.camera, scene);
-  if (!scene.camera) scene.camera = showingAll(scene, {.width = 480, .height = 480});
+  if (!scene.camera) {
+    Camera camera = kOverview;
+    camera.width = camera.height = 480;
+    scene.camera = showingAll(scene, camera);
+  }
   const fs::path folder(options.folder);
   std::vector<ReportPicture> pictures;
   const auto keep = [&](const std::string& name, const std::string& caption, const Image& image) {

@@ -79,7 +79,7 @@ void addCameraOptions(CLI::App& command, CameraOptions& options) {
 
 void apply(const CameraOptions& options, Scene& scene) {
   if (!options.given()) return;
-  Camera camera = scene.camera.value_or(Camera{});
+  Camera camera = scene.camera.value_or(kOverview);
   if (options.elevation_deg) camera.elevation = glm::radians(*options.elevation_deg);
   if (options.azimuth_deg) camera.azimuth = glm::radians(*options.azimuth_deg);
   if (options.size) {

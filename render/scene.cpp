@@ -61,7 +61,7 @@ Camera showingAll(const Scene& scene, Camera camera) {
 }
 
 Camera cameraOf(const Scene& scene) {
-  return scene.camera ? *scene.camera : showingAll(scene, {});
+  return scene.camera ? *scene.camera : showingAll(scene, kOverview);
 }
 
 Axes viewAxes(const Camera& camera) {

@@ -17,11 +17,14 @@ namespace sunfleck {
 // An orthographic camera that looks at a point.
 struct Camera {
   glm::vec3 target{0.f};          // point in the middle of the picture [m]
-  float elevation = 0.44f;        // of the camera as seen from the target [rad], -pi/2 .. pi/2
-  float azimuth = 0.35f;          // of the camera as seen from the target, from +x towards +y [rad]
+  float elevation = 0.f;          // of the camera as seen from the target [rad], -pi/2 .. pi/2
+  float azimuth = 0.f;            // of the camera as seen from the target, from +x towards +y [rad]
   float half_width = 1.f;         // half of the picture's width in the scene [m], > 0
   int width = 512, height = 512;  // [pixel], > 0
 };
+
+// Where a scene is looked at from unless it says so: somewhat from above, 25 degrees, and aside, 20 degrees.
+inline constexpr Camera kOverview{.elevation = 0.4363f, .azimuth = 0.3491f};
 
 // Red, green and blue: the bands a picture is made in.
 inline constexpr int kBands = 3;

@@ -98,7 +98,7 @@ void readOptics(Scene& scene, detail::SceneTable leaf, detail::SceneTable wood, 
 }
 
 void readCamera(Scene& scene, detail::SceneTable camera) {
-  Camera read;
+  Camera read = kOverview;
   if (camera.has("elevation_deg")) read.elevation = degrees(camera, "elevation_deg", -90., 90., "in [-90, 90]");
   if (camera.has("azimuth_deg")) read.azimuth = degrees(camera, "azimuth_deg", -360., 360., "in [-360, 360]");
   read.width = camera.count("width", read.width, 16384);

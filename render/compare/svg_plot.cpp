@@ -153,7 +153,8 @@ std::string barPlot(const std::string& y_title, const std::vector<PlotBar>& bars
       const std::size_t comma = bar.group.find(", ");
       svg += text(0.5 * (group_start + x), kBottom + 18., "middle", bar.group.substr(0, comma));
       if (comma != std::string::npos)
-        svg += text(0.5 * (group_start + x), kBottom + 33., "middle", bar.group.substr(comma + 2), R"( font-size="11")");
+        svg +=
+            text(0.5 * (group_start + x), kBottom + 33., "middle", bar.group.substr(comma + 2), R"( font-size="11")");
       group_start = x += slot;
     }
   }
