@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
-#include <cstdlib>
-#include <iostream>
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <string_view>
+#include <vector>
 
 #include "apps/commands.hpp"
 #include "apps/terminal.hpp"
@@ -36,6 +38,17 @@ bool asksForSceneHelp(int count, char** arguments) {
   return false;
 }
 
+// What was typed, last word first as CLI11 takes it; options without a command are those of validate.
+std::vector<std::string> withCommand(int count, char** arguments) {
+  std::vector<std::string> words(std::make_reverse_iterator(arguments + count),
+                                 std::make_reverse_iterator(arguments + 1));
+  static constexpr std::array own{"-h", "--help", "--version"};
+  const bool has_command =
+      !words.empty() && (words.back()[0] != '-' || std::find(own.begin(), own.end(), words.back()) != own.end());
+  if (!has_command) words.emplace_back("validate");
+  return words;
+}
+
 int run(int count, char** arguments) {
   if (asksForSceneHelp(count, arguments)) {
     fmt::print("{}", sceneFileHelp());
@@ -61,10 +74,7 @@ int run(int count, char** arguments) {
   apps::addTrace(app, options, status);
   apps::addRender(app, options, status);
   try {
-    if (count == 1)
-      app.parse(std::string("validate"));
-    else
-      app.parse(count, arguments);
+    app.parse(withCommand(count, arguments));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return wrongInput(std::string(e.what()) + " (see: sunfleck --help)");

@@ -23,8 +23,8 @@ struct Camera {
   int width = 512, height = 512;  // [pixel], > 0
 };
 
-// Where a scene is looked at from unless it says so: somewhat from above, 25 degrees, and aside, 20 degrees.
-inline constexpr Camera kOverview{.elevation = 0.4363f, .azimuth = 0.3491f};
+// Where a scene is looked at from unless it says so: somewhat from above, 10 degrees, and aside, 20 degrees.
+inline constexpr Camera kOverview{.elevation = 0.1745f, .azimuth = 0.3491f};
 
 // Red, green and blue: the bands a picture is made in.
 inline constexpr int kBands = 3;

@@ -235,7 +235,7 @@ azimuth_deg = 0.0             # where the sun stands, from +x towards +y
 
 [camera]                      # orthographic; shows the whole stand if left out
 # target = [0.0, 0.0, 4.0]    # point in the middle of the picture
-# elevation_deg = 25.0        # -90 to 90
+# elevation_deg = 10.0        # -90 to 90
 # azimuth_deg = 20.0          # where the camera stands, from +x towards +y
 # half_width = 5.0            # half of the picture's width
 # width = 512                 # pixels, 1 to 16384

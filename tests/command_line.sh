@@ -107,6 +107,7 @@ does "1 leaf and 0 wood" plant flat.obj
 does "cells" voxelize leaf.obj -o leaf.vdb --cell-size 0.1
 does "cells" voxelize leaf.vdb
 does '"absorbed_leaves"' trace leaf.obj --paths 1000 --json
+does '"models"' --json leaf.obj --paths 1000 --no-pictures -o report
 does "wrote" validate leaf.obj --paths 1000 --no-pictures -o report
 [ -s report/report.html ] && [ -s report/report.json ] || fail "validate: no report"
 

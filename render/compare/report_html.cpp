@@ -53,13 +53,13 @@ std::string errorTable(std::span<const Validation> validations) {
       "leaves</th><th>per leaf</th><th>total light</th><th>prepare</th><th>shade</th></tr>\n";
   for (const Validation& v : validations) {
     for (const ModelResult& m : v.models) {
-      const PaperErrors paper = paperErrors(m.model);
+      const std::optional<double> paper = paperError(v, m.model);
       html += fmt::format(
           "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:+.1f} %</td><td>{:.0f} "
           "ms</td><td>{:.2f} ms</td></tr>\n",
-          kindOf(v), labelOf(m.model), percent(m.errors.rms_category),
-          percent(v.scene.stand.period ? paper.periodic : paper.single_tree), percent(m.errors.rms_weighted),
-          percent(m.errors.rms_leaf), 100. * m.errors.bias, 1e3 * m.prepare_seconds, 1e3 * m.shade_seconds);
+          kindOf(v), labelOf(m.model), percent(m.errors.rms_category), paper ? percent(*paper) : "-",
+          percent(m.errors.rms_weighted), percent(m.errors.rms_leaf), 100. * m.errors.bias, 1e3 * m.prepare_seconds,
+          1e3 * m.shade_seconds);
     }
     html += fmt::format(
         "<tr><td>{}</td><td>noise of Monte "
@@ -73,11 +73,10 @@ std::string errorPlot(std::span<const Validation> validations) {
   std::vector<PlotBar> bars;
   for (const Validation& v : validations)
     for (const ModelResult& m : v.models) {
-      const PaperErrors paper = paperErrors(m.model);
       const std::string group = labelOf(m.model) + ", " + kindOf(v);
       bars.push_back({group, "ours", "#009E73", m.errors.rms_category, false});
-      bars.push_back(
-          {group, "paper, its own tree", "#555555", v.scene.stand.period ? paper.periodic : paper.single_tree, true});
+      if (const std::optional<double> paper = paperError(v, m.model))
+        bars.push_back({group, "paper, its own tree", "#555555", *paper, true});
     }
   return barPlot("RMS by category", bars);
 }
