@@ -33,6 +33,7 @@ inline constexpr int kBands = 3;
 struct Scene {
   std::string name;
   std::string source;  // what the leaves came from: a file or a species with its seed
+  Dropped dropped;     // triangles of no area that the file held
   std::shared_ptr<const TreeMesh> tree;
   Stand stand;
   std::array<LeafOptics, kBands> leaf;  // per band

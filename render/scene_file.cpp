@@ -27,7 +27,8 @@ void growTree(Scene& scene, const std::string& species_name, std::uint64_t seed)
 void importFile(Scene& scene, const std::filesystem::path& file, const ImportRules& rules) {
   ImportedTree imported = importTree(file, rules);
   scene.tree = std::make_shared<const TreeMesh>(std::move(imported.mesh));
-  scene.source = file.string();
+  scene.source = fmt::format("{} (leaf and wood: {})", file.string(), imported.how);
+  scene.dropped = imported.dropped;
 }
 
 // `side` x `side` trees, `spacing` apart, around the origin.

@@ -150,7 +150,9 @@ std::string reportHtml(std::span<const Validation> validations, std::span<const 
     for (const ReportPicture& picture : pictures)
       html += "<figure><img alt=\"" + escapeMarkup(picture.caption) + "\" width=\"380\" src=\"data:image/png;base64," +
               base64(picture.png) + "\"><figcaption>" + escapeMarkup(picture.caption) + "</figcaption></figure>\n";
-    html += "</div>\n<p>All at the same exposure, with the wood and a ground that reflects a sixth of the light.</p>\n";
+    html +=
+        "</div>\n<p>All at the same exposure, with the wood and a ground that reflects a sixth of the light. Monte "
+        "Carlo's ground has no end.</p>\n";
   }
   html += "<h2>Made by</h2>\n<p><code>" + escapeMarkup(origin.command) + "</code><br>Sunfleck " +
           escapeMarkup(origin.version) + ", commit " + escapeMarkup(origin.commit) + "</p>\n</body></html>\n";
