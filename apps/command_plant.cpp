@@ -71,7 +71,7 @@ int runPlant(PlantOptions options, const RunOptions& run) {
                                         {"mean_thickness", crown.mean_thickness},
                                         {"dropped_leaf_triangles", dropped.leaf_triangles},
                                         {"dropped_wood_triangles", dropped.wood_triangles}};
-    fmt::print("{}\n", result.dump(2));
+    fmt::print("{}\n", result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
   const glm::vec3 size = bounds(mesh).size();

@@ -44,7 +44,7 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
                                               {"height", image.height},
                                               {"prepare_seconds", prepared},
                                               {"shade_seconds", shaded}}
-                           .dump(2));
+                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   else
     fmt::print("wrote {}: {} x {}, {}, {:.0f} ms to prepare, {:.0f} ms to draw\n", options.output, image.width,
                image.height, options.model, 1e3 * prepared, 1e3 * shaded);

@@ -110,7 +110,7 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
           pixels.width, pixels.height, result.mean.value, result.mean.standard_error, result.paths, result.seconds,
           static_cast<double>(result.paths) * 1e-6 / result.cpu_seconds);
   }
-  if (run.json) fmt::print("{}\n", json.dump(2));
+  if (run.json) fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   for (const std::string& file : {options.leaves, options.picture})
     if (!file.empty() && !run.json && !interrupted()) fmt::print("wrote {}\n", file);
   if (interrupted()) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
@@ -135,7 +135,7 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
       ->check(numberIn(0., 2., "0, 1 or 2"));
   command->add_option("-o,--leaves", trace->leaves, "CSV to write: irradiance of each leaf and its standard error");
   command->add_option("--picture", trace->picture, "Picture to write: .exr (radiances) or .png");
-  command->add_flag("--only-picture", trace->only_picture, "Trace the picture alone");
+  command->add_flag("--only-picture", trace->only_picture, "Trace the picture alone")->excludes("--leaves");
   command->add_option("--exposure", trace->exposure, "Factor from radiance to brightness in a .png (default 3)")
       ->check(numberIn(1e-6, 1e6, "above 0"));
   command->add_flag("--without-wood", trace->without_wood, "Leave the wood out");

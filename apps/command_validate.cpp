@@ -59,9 +59,8 @@ void makeFolder(const fs::path& folder) {
   requireWritable(folder / "report.html");
 }
 
-std::string kindOf(const Scene& scene) {
-  if (scene.stand.period) return "periodic";
-  return scene.stand.trees.size() == 1 ? "single tree" : fmt::format("{} trees", scene.stand.trees.size());
+std::string percent(const std::optional<double>& fraction, const char* sign = "") {
+  return fraction ? fmt::format("{}{:.1f} %", *fraction > 0. ? sign : "", 100. * *fraction) : "-";
 }
 
 // Ours and the paper's Table 3. Its tree is a cherry too, but not this one.
@@ -78,12 +77,9 @@ std::string table(std::span<const Validation> validations) {
                         "by leaves", "per leaf", "total light", "time");
     for (const ModelResult& m : v.models) {
       const std::optional<double> paper = paperError(v, m.model);
-      std::string name = nameOf(m.model);
-      std::transform(name.begin(), name.end(), name.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-      text += fmt::format("  {:<6} {:>10.1f} % {:>8} {:>10.1f} % {:>8.1f} % {:>+10.1f} % {:>9.0f} ms\n", name,
-                          100. * m.errors.rms_category, paper ? fmt::format("{:.3g} %", 100. * *paper) : "-",
-                          100. * m.errors.rms_weighted, 100. * m.errors.rms_leaf, 100. * m.errors.bias,
+      text += fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>9.0f} ms\n", labelOf(m.model),
+                          percent(m.errors.rms_category), paper ? fmt::format("{:.3g} %", 100. * *paper) : "-",
+                          percent(m.errors.rms_weighted), percent(m.errors.rms_leaf), percent(m.errors.bias, "+"),
                           1e3 * (m.prepare_seconds + m.shade_seconds));
     }
     text += fmt::format("  {:<6} {:>12} {:>8} {:>10.2f} % {:>8.1f} % {:>12} {:>10.1f} s   ({:.3g} million paths)\n",
@@ -132,19 +128,35 @@ std::vector<ReportPicture> makePictures(const ValidateOptions& options, const Ru
   return pictures;
 }
 
+// Pictures are worth having, but the figures do not hang on them: without OpenGL the report goes without.
+std::vector<ReportPicture> picturesIfPossible(const ValidateOptions& options, const RunOptions& run, const Scene& scene,
+                                              const StandGeometry& stand) {
+  try {
+    return makePictures(options, run, scene, stand);
+  } catch (const InvalidInput&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    fmt::print(stderr, "sunfleck: no pictures: {}\n", e.what());
+    return {};
+  }
+}
+
 int runValidate(ValidateOptions& options, const RunOptions& run) {
   options.effort.trace = {.paths = static_cast<std::uint64_t>(options.paths), .seed = run.seed, .threads = run.threads};
   const Scene given = readScene(options.scene);
+  const std::vector<Scene> scenes = scenesOf(options, given);
+  for (const Scene& scene : scenes) requireValidatable(scene, options.effort.band);
   makeFolder(options.folder);
   std::vector<Validation> validations;
   std::vector<ReportPicture> pictures;
-  for (const Scene& scene : scenesOf(options, given)) {
+  for (const Scene& scene : scenes) {
+    if (interrupted()) break;
     const StandGeometry stand =
         standGeometry(scene, options.geometry, terminalProgress("opacity maps and cells", run.quiet));
     validations.push_back(
         validate(scene, stand, options.effort, terminalProgress("Monte Carlo, " + kindOf(scene), run.quiet)));
-    if (pictures.empty() && !options.no_pictures && !interrupted()) pictures = makePictures(options, run, scene, stand);
-    if (interrupted()) break;
+    if (pictures.empty() && !options.no_pictures && !interrupted())
+      pictures = picturesIfPossible(options, run, scene, stand);
   }
   const fs::path folder(options.folder);
   const std::string json = reportJson(validations, version(), commit());

@@ -50,7 +50,7 @@ int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
       result["mesh_leaf_area_m2"] = mesh_area;
       result["seconds"] = seconds;
     }
-    fmt::print("{}\n", result.dump(2));
+    fmt::print("{}\n", result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
   fmt::print("{}\n  cells          {} occupied, {:.4g} m wide, {:.3g} MB\n  leaf area      {:.6g} m2", source,

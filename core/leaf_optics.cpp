@@ -8,8 +8,7 @@ void validate(const LeafOptics& optics) {
   require(optics.reflectance >= 0.f && optics.reflectance <= 1.f, "leaf reflectance", optics.reflectance, "in [0, 1]");
   require(optics.transmittance >= 0.f && optics.transmittance <= 1.f, "leaf transmittance", optics.transmittance,
           "in [0, 1]");
-  // One ulp of slack: 0.6f + 0.4f may round above 1.
-  require(optics.albedo() <= 1.0000001f, "leaf reflectance + transmittance", optics.albedo(), "at most 1");
+  require(optics.albedo() <= 1.f, "leaf reflectance + transmittance", optics.albedo(), "at most 1");
 }
 
 }  // namespace sunfleck

@@ -10,7 +10,7 @@
 namespace sunfleck {
 namespace {
 
-constexpr float kLargestCoordinate = 1e6f;  // [m]; beyond it a float no longer resolves a leaf
+constexpr float kLargestCoordinate = 1e4f;  // [m]; there a float still resolves a millimetre
 
 void checkVertices(const TreeMesh& mesh, const std::string& source) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
@@ -18,7 +18,7 @@ void checkVertices(const TreeMesh& mesh, const std::string& source) {
       const float value = mesh.vertices[i][axis];
       if (!(std::abs(value) <= kLargestCoordinate))
         require(false, source + ": vertex " + std::to_string(i + 1) + " " + "xyz"[axis], value,
-                "a finite number of metres, at most 1e6 in size");
+                "a finite number of metres, at most 1e4 in size");
     }
 }
 

@@ -27,7 +27,7 @@ struct Dropped {
 };
 
 // Makes a mesh safe to use: throws InvalidInput("<source>: ...") on an index out of range, a coordinate that is not
-// finite or beyond 1e6 m, or a mesh without leaves; drops triangles of no area; and tells leaves apart: leaf triangles
+// finite or beyond 1e4 m, or a mesh without leaves; drops triangles of no area; and tells leaves apart: leaf triangles
 // that share a vertex belong to one leaf.
 Dropped finish(TreeMesh& mesh, const std::string& source);
 

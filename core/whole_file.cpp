@@ -37,17 +37,20 @@ void requireWritable(const fs::path& path) {
   std::error_code failure;
   if (path.empty() || !path.has_filename()) cannotWrite(path, "it names no file");
   if (fs::is_directory(path, failure)) cannotWrite(path, "it is a folder");
+  if (fs::exists(path, failure) && !fs::is_regular_file(path, failure)) cannotWrite(path, "it is no regular file");
   if (!fs::is_directory(folderOf(path), failure)) cannotWrite(path, "there is no folder " + folderOf(path).string());
   if (access(folderOf(path).c_str(), W_OK | X_OK) != 0) cannotWrite(path, std::strerror(errno));
 }
 
 void writeWhole(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   requireWritable(path);
-  const Temporary temporary{folderOf(path) /
+  std::error_code failure;
+  // Through a symbolic link it is the file behind it that is replaced.
+  const fs::path target = fs::is_symlink(path, failure) ? fs::weakly_canonical(path) : path;
+  const Temporary temporary{folderOf(target) /
                             ("." + path.stem().string() + "." + std::to_string(getpid()) + path.extension().string())};
   write(temporary.path);
-  std::error_code failure;
-  fs::rename(temporary.path, path, failure);
+  fs::rename(temporary.path, target, failure);
   if (failure) cannotWrite(path, failure.message());
 }
 

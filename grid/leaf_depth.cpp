@@ -1,5 +1,6 @@
 #include "grid/leaf_depth.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -56,9 +57,11 @@ LeafDepths leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, std::sp
   for (int y = 0; y < light.size().y; ++y)
     for (int x = 0; x < light.size().x; ++x) {
       const std::span<const Crossing> line = light.crossings(x, y);
-      for (std::size_t i = 0; i < line.size(); ++i) {
-        const int before = static_cast<int>(i);
-        add(line[i].leaf, light.inSpace(x, y, line[i].depth), before, static_cast<int>(line.size()) - 1 - before);
+      for (const Crossing& here : line) {
+        int before = 0, beyond = 0;
+        for (const Crossing& other : line)  // a folded leaf does not stand in its own light
+          if (other.leaf != here.leaf) ++(other.depth < here.depth ? before : beyond);
+        add(here.leaf, light.inSpace(x, y, here.depth), before, beyond);
       }
     }
   const std::vector<glm::vec3> centres = leafCentres(mesh);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include "core/require.hpp"
 
 namespace sunfleck {
 namespace {
@@ -26,18 +29,28 @@ bool meets(glm::vec3 centre, glm::vec3 half_size, Direction direction, bool both
 
 }  // namespace
 
-std::vector<glm::vec3> neighbourDisplacements(const Stand& stand, std::size_t index) {
+glm::ivec2 periodsAround(const Stand& stand, const Bounds& box) {
+  if (!stand.period) return {0, 0};
+  glm::ivec2 around(0);
+  for (int axis = 0; axis < 2; ++axis) {
+    const float period = (*stand.period)[axis], width = box.size()[axis];
+    require(period * kMostOverlap >= width, "period", period,
+            "at least 1/" + std::to_string(kMostOverlap) + " of the tree's width, " + std::to_string(width) + " m");
+    around[axis] = static_cast<int>(std::ceil(kWidthsAround * std::max(period, width) / period));
+  }
+  return around;
+}
+
+std::vector<glm::vec3> neighbourDisplacements(const Stand& stand, const Bounds& box, std::size_t index) {
   std::vector<glm::vec3> displacements;
-  const int around = stand.period ? kPeriodsAround : 0;
+  const glm::ivec2 around = periodsAround(stand, box);
+  const glm::vec2 period = stand.period.value_or(glm::vec2(0.f));
   for (std::size_t i = 0; i < stand.trees.size(); ++i)
-    for (int row = -around; row <= around; ++row)
-      for (int column = -around; column <= around; ++column) {
+    for (int row = -around.y; row <= around.y; ++row)
+      for (int column = -around.x; column <= around.x; ++column) {
         if (i == index && row == 0 && column == 0) continue;
-        glm::vec3 displacement = stand.trees[i].position - stand.trees[index].position;
-        if (stand.period)
-          displacement +=
-              glm::vec3(static_cast<float>(column) * stand.period->x, static_cast<float>(row) * stand.period->y, 0.f);
-        displacements.push_back(displacement);
+        const glm::vec3 shift(static_cast<float>(column) * period.x, static_cast<float>(row) * period.y, 0.f);
+        displacements.push_back(stand.trees[i].position - stand.trees[index].position + shift);
       }
   return displacements;
 }

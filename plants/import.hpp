@@ -30,7 +30,7 @@ struct ImportedTree {
 // by the words in its material, group and object names; else by the materials' colours when these are brown and not
 // brown. All of a PLY, which has no names, is leaf. Leaf triangles that share a vertex are one leaf. Throws
 // InvalidInput, with the file and where possible the line, on a file that cannot be read, is empty, has no faces, is
-// broken or truncated, has coordinates that are not finite or beyond 1e6 m, indices out of range, no leaf, or leaf and
+// broken or truncated, has coordinates that are not finite or beyond 1e4 m, indices out of range, no leaf, or leaf and
 // wood that cannot be told apart.
 ImportedTree importTree(const std::filesystem::path& path, const ImportRules& rules = {});
 

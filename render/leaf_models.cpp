@@ -5,14 +5,20 @@
 #include <chrono>
 
 #include "grid/instance_cells.hpp"
+#include "grid/neighbours.hpp"
 #include "spp/slab.hpp"
 
 namespace sunfleck {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 constexpr float kMu0 = 1.f;  // the slab's normal is the light's axis
-// Leaves of all orientations send as much on into the light's forward half as back when reflectance = transmittance;
-// METHOD and the paper take the phase function as isotropic.
+// Leaves of all orientations whose reflectance and transmittance are alike send as much on into the light's forward
+// half as back: the paper's experiment. For other leaves it is an approximation.
 constexpr float kForwardShare = 0.5f;
 
 float irradianceOf(Model model, float projection, float depth, float thickness, float compensation, float albedo) {
@@ -39,21 +45,25 @@ std::string nameOf(Model model) {
 
 LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand) {
   const TreeMesh& mesh = *scene.tree;
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   LeafGeometry geometry;
   geometry.projections = leafProjections(mesh, scene.sun());
   const std::size_t trees = scene.stand.trees.size();
   geometry.depths.resize(trees);
   tbb::parallel_for(std::size_t{0}, trees, [&](std::size_t tree) {
-    geometry.depths[tree] = leafDepths(mesh, stand.light, stand.neighbours[tree]);
+    geometry.depths[tree] =
+        leafDepths(mesh, stand.light, neighbourDisplacements(scene.stand, stand.cells.leaves, tree));
   });
+  geometry.depth_seconds = secondsSince(start);
+
+  const auto start_interpolation = Clock::now();
   const std::vector<glm::vec3> centres = leafCentres(mesh);
   for (const std::vector<float>& of_cells : stand.compensation) {
     std::vector<float>& of_leaves = geometry.compensation.emplace_back();
     of_leaves.reserve(centres.size());
     for (const glm::vec3& centre : centres) of_leaves.push_back(interpolate(stand.cells, of_cells, centre));
   }
-  geometry.depth_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  geometry.compensation_seconds = secondsSince(start_interpolation);
   return geometry;
 }
 

@@ -19,7 +19,8 @@ struct LeafGeometry {
   std::vector<LeafDepths> depths;                // of each tree
   std::vector<std::vector<float>> compensation;  // G of each leaf of each tree [1], 0 .. 1
   std::vector<float> projections;                // |n.s0| of each leaf, the same for all trees [1]
-  double depth_seconds = 0.;                     // wall time for the depths
+  double depth_seconds = 0.;                     // wall time for depths and projections
+  double compensation_seconds = 0.;              // wall time for G of the leaves from that of the cells
 };
 LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand);
 

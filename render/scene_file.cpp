@@ -115,13 +115,7 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
   scene.camera = read;
 }
 
-Scene readToml(const std::filesystem::path& file) {
-  toml::table table;
-  try {
-    table = toml::parse_file(file.string());
-  } catch (const toml::parse_error& e) {
-    throw InvalidInput(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
-  }
+Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   for (const auto& [key, node] : table) {
     static constexpr std::array known{"name", "tree", "stand", "leaf", "wood", "ground", "sun", "camera"};
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
@@ -143,6 +137,19 @@ Scene readToml(const std::filesystem::path& file) {
     throw InvalidInput(fmt::format("{}:{}: name: must be a text in quotes", file.string(), name->source().begin.line));
   scene.name = table["name"].value_or(file.stem().string());
   return scene;
+}
+
+// Whatever is wrong, the message begins with the file.
+Scene readToml(const std::filesystem::path& file) {
+  try {
+    return readTable(toml::parse_file(file.string()), file);
+  } catch (const toml::parse_error& e) {
+    throw InvalidInput(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
+  } catch (const InvalidInput& e) {
+    const std::string message = e.what();
+    if (message.starts_with(file.string())) throw;
+    throw InvalidInput(file.string() + ": " + message);
+  }
 }
 
 // Blossoming cherry and autumn maple reflect and pass nearly all light; `albedo` of the paper's experiment.
@@ -173,7 +180,8 @@ std::optional<Scene> builtin(const std::string& name) {
 }  // namespace
 
 glm::vec2 touchingPeriod(const TreeMesh& tree) {
-  return glm::max(glm::vec2(leafBounds(tree).size()), glm::vec2(1e-3f));
+  const glm::vec3 size = leafBounds(tree).size();
+  return glm::max(glm::vec2(size), glm::vec2(0.15f * std::max({size.x, size.y, size.z})));
 }
 
 std::vector<std::string> builtinScenes() {

@@ -21,15 +21,21 @@ struct GeometryEffort {
 // cells of each tree with their G-factors.
 struct StandGeometry {
   DeepOpacityMap light;
-  std::vector<std::vector<glm::vec3>> neighbours;  // of each tree: displacements of the others [m]
   CellGrid cells;
   std::vector<std::vector<float>> compensation;  // of each tree: G per cell [1], 0 .. 1
   double light_seconds = 0.;                     // wall time for the light's map
   double compensation_seconds = 0.;              // wall time for the sample maps, the depths of the cells and G
 };
 
-// Throws InvalidInput when a tree of the stand is rotated: a prototype's maps serve its translated copies only (Eq.
-// 31).
+// The models hold numbers for every leaf of every tree.
+inline constexpr std::size_t kMostTrees = 1024;
+
+// Throws InvalidInput on a stand that the models cannot treat: one with a rotated tree, since a prototype's maps serve
+// its translated copies only (Eq. 31), with more than kMostTrees trees, or with a period much shorter than the tree is
+// wide.
+void requireModelled(const Scene& scene);
+
+// Throws InvalidInput as requireModelled() does, and std::runtime_error("interrupted") when `progress` ends it.
 StandGeometry standGeometry(const Scene& scene, const GeometryEffort& effort, const Progress& progress = {});
 
 }  // namespace sunfleck

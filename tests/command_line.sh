@@ -4,7 +4,7 @@
 set -u
 program=$(readlink -f "$1")
 place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
+trap 'rm -rf "$place" "$place.before"' EXIT
 cd "$place" || exit 1
 failures=0
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
@@ -12,7 +12,7 @@ fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 # refuses WHAT_THE_MESSAGE_MUST_HOLD ARGUMENTS...
 refuses() {
   local expected=$1; shift
-  ls -A > ../before.$$ ; mv ../before.$$ "$place.before"
+  find . | sort >"$place.before"
   "$program" "$@" >stdout.txt 2>stderr.txt </dev/null
   local status=$?
   [ $status -eq 2 ] || fail "$* : status $status, not 2: $(head -c 400 stderr.txt)"
@@ -20,7 +20,7 @@ refuses() {
   grep -qiF -- "$expected" stderr.txt || fail "$* : \"$expected\" is not in: $(cat stderr.txt)"
   [ ! -s stdout.txt ] || fail "$* : wrote to stdout: $(head -c 200 stdout.txt)"
   rm -f stdout.txt stderr.txt
-  diff <(ls -A) "$place.before" >/dev/null || fail "$* : left something behind: $(ls -A | tr '\n' ' ')"
+  diff <(find . | sort) "$place.before" >/dev/null || fail "$* : left something behind: $(find . | tr '\n' ' ')"
   rm -f "$place.before"
 }
 # does WHAT_STDOUT_MUST_HOLD ARGUMENTS...
@@ -45,8 +45,8 @@ printf "$square"'usemtl leaf\nf 1 1 2\n' >only_flat.obj
 printf "$square"'usemtl whatever\nf 1 2 3 4\n' >unknown.obj
 : >empty.obj
 : >empty.vdb
-head -c 3000 /dev/urandom >garbage.obj
-head -c 3000 /dev/urandom >garbage.vdb
+seq 1 700 | tr '0-9\n' '\000-\011\377' >garbage.obj
+cp garbage.obj garbage.vdb
 mkdir folder
 printf '[sun]\nzenit_deg = 3\n' >unknown_key.toml
 printf '[sun]\nzenith_deg = "high"\n' >wrong_type.toml
@@ -97,6 +97,15 @@ refuses "no-such-scene" trace no-such-scene
 refuses "short.csv:2" slab --batch short.csv
 refuses "negative.csv:2" slab --batch negative.csv
 refuses "species" plant --species baobab
+printf '[tree]\nfile = "leaf.obj"\n[ground]\nalbedo = 0.2\n' >ground.toml
+printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "positions"\npositions = [[0, 0, 45]]\n' >rotated.toml
+refuses "ground albedo" validate ground.toml
+refuses "rotation" validate rotated.toml
+refuses "rotation" render rotated.toml -o x.png
+refuses "period" validate leaf.obj --period 0.01 0.01
+refuses "--only-picture" trace leaf.obj --only-picture -o x.csv
+refuses "/dev/null" voxelize leaf.obj -o /dev/null
+refuses "albedo" trace leaf.obj --albedo 1.0000001
 
 does "COMMAND" --help
 does "zenith_deg" --help scene

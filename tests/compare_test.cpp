@@ -37,20 +37,33 @@ TEST(R6_ModelErrors, AreThoseWorkedOutByHand) {
   const std::vector<double> reference{0.5, 1.5, 1., 1., 1., 2., 2., 0.};
   const std::vector<float> model{1.1f, 1.1f, 1.1f, 1.1f, 1.1f, 1.8f, 1.8f, 0.f};
   const auto errors = modelErrors(model, reference, categories(eightLeaves(), 2));
-  EXPECT_NEAR(errors.rms_category, std::sqrt((0.01 + 0.04) / (1. + 4.)), 1e-7);  // float input
-  EXPECT_NEAR(errors.rms_weighted, std::sqrt((5. * 0.01 + 2. * 0.04) / (5. + 2. * 4.)), 1e-7);
-  EXPECT_NEAR(errors.rms_leaf, std::sqrt((0.36 + 0.16 + 3. * 0.01 + 2. * 0.04) / (0.25 + 2.25 + 3. + 8.)), 1e-7);
-  EXPECT_NEAR(errors.bias, 0.1 / 9., 1e-7);
+  EXPECT_NEAR(errors.rms_category.value(), std::sqrt((0.01 + 0.04) / (1. + 4.)), 1e-7);  // float input
+  EXPECT_NEAR(errors.rms_weighted.value(), std::sqrt((5. * 0.01 + 2. * 0.04) / (5. + 2. * 4.)), 1e-7);
+  EXPECT_NEAR(errors.rms_leaf.value(), std::sqrt((0.36 + 0.16 + 3. * 0.01 + 2. * 0.04) / (0.25 + 2.25 + 3. + 8.)),
+              1e-7);
+  EXPECT_NEAR(errors.bias.value(), 0.1 / 9., 1e-7);
 }
 
-TEST(R6_ModelErrors, AreZeroForThePerfectModelAndForDarkness) {
+// (R6) Check that a perfect model has no error, and that where there is nothing to compare with there is none to tell:
+// the reference dark, or no category.
+TEST(R6_ModelErrors, AreZeroForThePerfectModelAndUndefinedInDarkness) {
+  const std::vector<double> reference{0.5, 1.5, 1., 1., 1., 2., 2., 0.25};
+  const std::vector<float> perfect(reference.begin(), reference.end());
+  const auto none = modelErrors(perfect, reference, categories(eightLeaves(), 1));
+  EXPECT_EQ(none.rms_category.value(), 0.);
+  EXPECT_EQ(none.rms_leaf.value(), 0.);
+  EXPECT_EQ(none.bias.value(), 0.);
+
   const std::vector<double> dark(8, 0.);
-  const auto errors = modelErrors(std::vector<float>(8, 0.f), dark, categories(eightLeaves(), 1));
-  EXPECT_EQ(errors.rms_category, 0.);
-  EXPECT_EQ(errors.rms_leaf, 0.);
+  const auto in_darkness = modelErrors(perfect, dark, categories(eightLeaves(), 1));
+  EXPECT_FALSE(in_darkness.rms_category);
+  EXPECT_FALSE(in_darkness.rms_leaf);
+  EXPECT_FALSE(in_darkness.bias);
+  EXPECT_FALSE(modelErrors(perfect, reference, {}).rms_weighted);
   EXPECT_EQ(referenceNoise(dark, dark), 0.);
 }
 
+// (R6) Check the noise on a triangle of 3, 4 and 5.
 TEST(ReferenceNoise, IsTheRmsOfStandardErrors) {
   EXPECT_DOUBLE_EQ(referenceNoise(std::vector<double>{3., 4.}, std::vector<double>{0.3, 0.4}), 0.1);
 }

@@ -53,7 +53,8 @@ TEST(Directions, SpreadDirectionsHaveIsotropicMoments) {
 
 TEST(LeafOptics, RefusesSharesThatMakeLight) {
   EXPECT_NO_THROW(validate(LeafOptics{.reflectance = 0.6f, .transmittance = 0.4f}));
-  for (const LeafOptics bad : {LeafOptics{-0.1f, 0.f}, LeafOptics{0.7f, 0.7f}, LeafOptics{std::nanf(""), 0.f}})
+  for (const LeafOptics bad :
+       {LeafOptics{-0.1f, 0.f}, LeafOptics{0.7f, 0.7f}, LeafOptics{std::nanf(""), 0.f}, LeafOptics{0.6f, 0.4000001f}})
     EXPECT_THROW(validate(bad), InvalidInput);
 }
 
@@ -112,7 +113,7 @@ TEST(TreeMesh, FinishRefusesBrokenMeshes) {
     FAIL() << "a NaN went through";
   } catch (const InvalidInput& e) {
     EXPECT_EQ(std::string(e.what()),
-              "tree.obj: vertex 4 y = nan: must be a finite number of metres, at most 1e6 in size");
+              "tree.obj: vertex 4 y = nan: must be a finite number of metres, at most 1e4 in size");
   }
 
   TreeMesh only_wood = twoLeaves();
@@ -137,6 +138,12 @@ TEST(WholeFile, IsWrittenWholeOrNotAtAll) {
                std::runtime_error);
   EXPECT_THROW(writeWhole(folder / "none" / "c.txt", "x"), InvalidInput);
   EXPECT_THROW(requireWritable(folder), InvalidInput);
+  EXPECT_THROW(requireWritable("/dev/null"), InvalidInput);  // would be replaced by a file
+  fs::create_symlink(folder / "a.txt", folder / "link.txt");
+  writeWhole(folder / "link.txt", "through");
+  EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(fs::file_size(folder / "a.txt"), 7u);
+  fs::remove(folder / "link.txt");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}), 1);
   fs::remove_all(folder);
 }

@@ -494,7 +494,7 @@ TEST(R4_StandInstances, KnowWhoMayStandInTheLight) {
     return s.drawn[i].neighbours_end - s.drawn[i].first_neighbour;
   };
   const gl::GroundDisc ground{.centre = glm::vec3(0.f), .radius = 1.f};
-  const gl::StandInstances overhead = gl::standInstances(stand, leaf.map, ground);
+  const gl::StandInstances overhead = gl::standInstances(stand, glm::ivec2(8), leaf.map, ground);
   ASSERT_EQ(overhead.drawn.size(), 3u);
   EXPECT_EQ(neighbours(overhead, 0), 2u);
   EXPECT_EQ(neighbours(overhead, 2), 1u);
@@ -503,13 +503,13 @@ TEST(R4_StandInstances, KnowWhoMayStandInTheLight) {
   EXPECT_EQ(overhead.neighbours[overhead.drawn[1].first_neighbour + 1].displacement, glm::vec3(-3.f, 0.f, 0.f));
 
   leaf.map.axes = axesAlong(sunlight(80.f * kPi / 180.f, 0.5f * kPi));  // along y
-  const gl::StandInstances low = gl::standInstances(stand, leaf.map, ground);
+  const gl::StandInstances low = gl::standInstances(stand, glm::ivec2(8), leaf.map, ground);
   EXPECT_EQ(neighbours(low, 2), 3u);
 
   stand.trees.resize(1);
   stand.period = glm::vec2(5.f);
   leaf.map.axes = axesAlong({0.f, 0.f, -1.f});
-  const gl::StandInstances periodic = gl::standInstances(stand, leaf.map, ground);
+  const gl::StandInstances periodic = gl::standInstances(stand, glm::ivec2(8), leaf.map, ground);
   EXPECT_EQ(periodic.drawn.size(), 9u);
   EXPECT_EQ(neighbours(periodic, 0), 1u);
   EXPECT_EQ(neighbours(periodic, 8), 1u);

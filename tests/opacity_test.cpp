@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 
-#include "core/random.hpp"
+#include "core/require.hpp"
 #include "grid/deep_opacity_map.hpp"
 #include "grid/instance_cells.hpp"
 #include "grid/leaf_depth.hpp"
@@ -121,17 +121,41 @@ TEST(D6_LeafDepths, CountNeighbours) {
   EXPECT_NEAR(depths.thickness[0], 3.f, 1e-6f);
 }
 
-// Check that the neighbours along a direction are those that a brute search over points of both boxes finds.
+// Check the neighbours along a direction against those worked out by hand, for trees 2 m wide that touch: 8 periods are
+// kept; overhead only the 8 that touch can be met; and along x three rows, forward to the last and back to those that
+// touch.
 TEST(Neighbours, AlongADirectionAreThoseThatCanBeMet) {
   Bounds box;
   box.include(glm::vec3(-1.f, -1.f, 0.f));
   box.include(glm::vec3(1.f, 1.f, 3.f));
-  const std::vector<glm::vec3> all = neighbourDisplacements({.trees = {Placement{}}, .period = glm::vec2(2.f, 2.f)}, 0);
+  const std::vector<glm::vec3> all =
+      neighbourDisplacements({.trees = {Placement{}}, .period = glm::vec2(2.f, 2.f)}, box, 0);
   EXPECT_EQ(all.size(), 17u * 17u - 1u);
-  for (const glm::vec3& t : neighboursAlong(all, box, kDown, true)) EXPECT_LE(std::abs(t.x) + std::abs(t.y), 4.f);
-  const std::vector<glm::vec3> along_x = neighboursAlong(all, box, {1.f, 0.f, 0.f}, false);
-  EXPECT_EQ(along_x.size(),
-            3u * 8u + 3u * 2u - 1u);  // three rows, to +8 periods, and those that touch: columns 0 and -1
+  EXPECT_EQ(neighboursAlong(all, box, kDown, true).size(), 8u);
+  EXPECT_EQ(neighboursAlong(all, box, {1.f, 0.f, 0.f}, false).size(), 3u * 8u + 3u * 2u - 1u);
+}
+
+// Check that overlapping copies are all kept, as far as 8 widths, and that a period too short for the models is
+// refused.
+TEST(Neighbours, ReachAsFarForShortPeriods) {
+  Bounds box;
+  box.include(glm::vec3(-1.f, -1.f, 0.f));
+  box.include(glm::vec3(1.f, 1.f, 3.f));
+  EXPECT_EQ(periodsAround({.trees = {Placement{}}, .period = glm::vec2(0.5f, 4.f)}, box), glm::ivec2(32, 8));
+  EXPECT_EQ(periodsAround({}, box), glm::ivec2(0));
+  EXPECT_THROW(periodsAround({.trees = {Placement{}}, .period = glm::vec2(0.2f, 4.f)}, box), InvalidInput);
+}
+
+// (D6) Check that a leaf folded over itself does not stand in its own light.
+TEST(D6_LeafDepths, OfAFoldedLeaf) {
+  TreeMesh mesh;
+  mesh.vertices = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {1, 0.9f, 0}};
+  mesh.leaf_triangles = {{0, 1, 2}, {0, 1, 3}};  // two flaps on one edge, the second below the first
+  finish(mesh, "folded");
+  ASSERT_EQ(mesh.leaf_count, 1u);
+  const LeafDepths depths = leafDepths(mesh, DeepOpacityMap(mesh, kDown, 32), {});
+  EXPECT_EQ(depths.depth[0], 0.f);
+  EXPECT_EQ(depths.thickness[0], 1.f);
 }
 
 // (D4) Check cell depths at known places: below a stack all leaves lie upward and none downward.
@@ -173,7 +197,8 @@ TEST(D5_CellCompensation, IsHighInAStandAndLowerForALoneTree) {
     return std::accumulate(g.begin(), g.end(), 0.) / static_cast<double>(g.size());
   };
   const double alone = mean({});
-  const double in_stand = mean(neighbourDisplacements({.trees = {Placement{}}, .period = layer.size}, 0));
+  const double in_stand =
+      mean(neighbourDisplacements({.trees = {Placement{}}, .period = layer.size}, leafBounds(mesh), 0));
   // Where chance makes a path meet fewer leaves than the slab's mean, G falls below 1, and nowhere does it rise above:
   // the loss is one-sided, .07 for this layer.
   EXPECT_GT(in_stand, 0.9);

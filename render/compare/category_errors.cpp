@@ -47,11 +47,14 @@ ModelErrors modelErrors(std::span<const float> model, std::span<const double> re
     reference_total += reference[leaf];
   }
   const auto ratio = [](double numerator, double denominator) {
-    return denominator > 0. ? numerator / denominator : 0.;
+    return denominator > 0. ? std::optional(numerator / denominator) : std::nullopt;
   };
-  return {.rms_category = std::sqrt(ratio(squares, reference_squares)),
-          .rms_weighted = std::sqrt(ratio(weighted, reference_weighted)),
-          .rms_leaf = std::sqrt(ratio(leaf_squares, leaf_reference)),
+  const auto root = [&](double numerator, double denominator) {
+    return denominator > 0. ? std::optional(std::sqrt(numerator / denominator)) : std::nullopt;
+  };
+  return {.rms_category = root(squares, reference_squares),
+          .rms_weighted = root(weighted, reference_weighted),
+          .rms_leaf = root(leaf_squares, leaf_reference),
           .bias = ratio(total, reference_total)};
 }
 

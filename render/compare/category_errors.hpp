@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,12 +17,13 @@ struct Category {
 // The depth-thickness categories of Eq. 30 that hold at least `fewest` leaves, ordered by depth and thickness.
 std::vector<Category> categories(const LeafDepths& depths, std::size_t fewest = 5);
 
-// Errors of a model's leaf irradiances against a reference, as fractions (0.062 = 6.2 %).
+// Errors of a model's leaf irradiances against a reference, as fractions (0.062 = 6.2 %). Nothing where there is
+// nothing to compare with: no category, or a reference that is dark.
 struct ModelErrors {
-  double rms_category = 0.;  // Eq. 30 mended: sqrt(sum (<L> - <L0>)^2 / sum <L0>^2) over categories
-  double rms_weighted = 0.;  // the same, each category weighted by its number of leaves
-  double rms_leaf = 0.;      // the same over single leaves; holds the reference's noise too
-  double bias = 0.;          // error of the sum over all leaves' irradiances
+  std::optional<double> rms_category;  // Eq. 30 mended: sqrt(sum (<L> - <L0>)^2 / sum <L0>^2) over categories
+  std::optional<double> rms_weighted;  // the same, each category weighted by its number of leaves
+  std::optional<double> rms_leaf;      // the same over single leaves; holds the reference's noise too
+  std::optional<double> bias;          // error of the sum over all leaves' irradiances
 };
 
 // (R6) `model` and `reference` hold an irradiance per leaf.

@@ -32,19 +32,8 @@ std::string colourOf(Model model) {  // Okabe & Ito's palette, safe for the colo
   return "#000000";
 }
 
-std::string labelOf(Model model) {
-  std::string label = nameOf(model);
-  for (char& c : label) c = static_cast<char>(std::toupper(c));
-  return label;
-}
-
-std::string kindOf(const Validation& v) {
-  if (v.scene.stand.period) return "periodic";
-  return v.scene.stand.trees.size() == 1 ? "single tree" : fmt::format("{} trees", v.scene.stand.trees.size());
-}
-
-std::string percent(double fraction) {
-  return fmt::format("{:.3g} %", 100. * fraction);
+std::string percent(const std::optional<double>& fraction) {
+  return fraction ? fmt::format("{:.3g} %", 100. * *fraction) : "-";
 }
 
 std::string errorTable(std::span<const Validation> validations) {
@@ -55,16 +44,16 @@ std::string errorTable(std::span<const Validation> validations) {
     for (const ModelResult& m : v.models) {
       const std::optional<double> paper = paperError(v, m.model);
       html += fmt::format(
-          "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:+.1f} %</td><td>{:.0f} "
+          "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.0f} "
           "ms</td><td>{:.2f} ms</td></tr>\n",
-          kindOf(v), labelOf(m.model), percent(m.errors.rms_category), paper ? percent(*paper) : "-",
-          percent(m.errors.rms_weighted), percent(m.errors.rms_leaf), 100. * m.errors.bias, 1e3 * m.prepare_seconds,
+          kindOf(v.scene), labelOf(m.model), percent(m.errors.rms_category), percent(paper),
+          percent(m.errors.rms_weighted), percent(m.errors.rms_leaf), percent(m.errors.bias), 1e3 * m.prepare_seconds,
           1e3 * m.shade_seconds);
     }
     html += fmt::format(
         "<tr><td>{}</td><td>noise of Monte "
         "Carlo</td><td></td><td></td><td>{}</td><td>{}</td><td></td><td></td><td>{:.1f} s</td></tr>\n",
-        kindOf(v), percent(v.category_noise), percent(v.reference_noise), v.reference.seconds);
+        kindOf(v.scene), percent(v.category_noise), percent(v.reference_noise), v.reference.seconds);
   }
   return html + "</table>\n";
 }
@@ -73,8 +62,8 @@ std::string errorPlot(std::span<const Validation> validations) {
   std::vector<PlotBar> bars;
   for (const Validation& v : validations)
     for (const ModelResult& m : v.models) {
-      const std::string group = labelOf(m.model) + ", " + kindOf(v);
-      bars.push_back({group, "ours", "#009E73", m.errors.rms_category, false});
+      const std::string group = labelOf(m.model) + ", " + kindOf(v.scene);
+      bars.push_back({group, "ours", "#009E73", m.errors.rms_category.value_or(0.), false});
       if (const std::optional<double> paper = paperError(v, m.model))
         bars.push_back({group, "paper, its own tree", "#555555", *paper, true});
     }
@@ -106,7 +95,7 @@ std::string depthPlot(const Validation& v) {
   return fmt::format(
       "<figure>{}<figcaption>Irradiance of a leaf, both sides, against its depth: {}. Bars on Monte Carlo are its "
       "standard error.</figcaption></figure>\n",
-      linePlot("depth: leaves between the light and the leaf", "irradiance / sun's", lines), kindOf(v));
+      linePlot("depth: leaves between the light and the leaf", "irradiance / sun's", lines), kindOf(v.scene));
 }
 
 std::string facts(const Validation& v) {
@@ -115,7 +104,7 @@ std::string facts(const Validation& v) {
       "A leaf lies {:.2f} leaves deep in {:.2f} on average; {} depth-thickness categories hold at least 5 leaves and "
       "leave out "
       "{} leaves. Reference: {:.3g} million paths of light, seed {}{}.</p>\n",
-      escapeMarkup(kindOf(v) + " (" + v.scene.source + ")"), v.scene.tree->leaf_count,
+      escapeMarkup(kindOf(v.scene) + " (" + v.scene.source + ")"), v.scene.tree->leaf_count,
       v.scene.tree->leaf_triangles.size(), v.leaf_area, v.optics().albedo(),
       v.scene.sun_zenith * 180.f / std::numbers::pi_v<float>, v.mean_depth, v.mean_thickness, v.categories.size(),
       v.leaves_left_out, static_cast<double>(v.reference.paths) * 1e-6, v.effort.trace.seed,

@@ -8,6 +8,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json orNull(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 void add(Json& json, const Validation& v) {
   const double degrees = 180. / std::numbers::pi;
   json["scene"] = {{"name", v.scene.name},
@@ -29,10 +33,10 @@ void add(Json& json, const Validation& v) {
   Json models = Json::array();
   for (const ModelResult& m : v.models)
     models.push_back({{"name", nameOf(m.model)},
-                      {"rms_category", m.errors.rms_category},
-                      {"rms_weighted", m.errors.rms_weighted},
-                      {"rms_leaf", m.errors.rms_leaf},
-                      {"bias", m.errors.bias},
+                      {"rms_category", orNull(m.errors.rms_category)},
+                      {"rms_weighted", orNull(m.errors.rms_weighted)},
+                      {"rms_leaf", orNull(m.errors.rms_leaf)},
+                      {"bias", orNull(m.errors.bias)},
                       {"prepare_seconds", m.prepare_seconds},
                       {"shade_seconds", m.shade_seconds}});
   json["models"] = models;
@@ -44,7 +48,8 @@ std::string reportJson(std::span<const Validation> validations, const std::strin
   Json json{{"sunfleck", version}, {"commit", commit}};
   add(json, validations.front());
   if (validations.size() > 1) add(json["periodic"], validations[1]);
-  return json.dump(2) + "\n";
+  // Names of files need not be UTF-8; JSON must.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace sunfleck

@@ -1,5 +1,6 @@
 #include "render/compare/validation.hpp"
 
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -31,11 +32,27 @@ double categoryNoise(const ForwardResult& reference, std::span<const Category> c
 
 }  // namespace
 
-Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
-                    const Progress& progress) {
-  const auto band = effort.band;
+std::string kindOf(const Scene& scene) {
+  if (scene.stand.period) return "periodic";
+  return scene.stand.trees.size() == 1 ? "single tree" : std::to_string(scene.stand.trees.size()) + " trees";
+}
+
+std::string labelOf(Model model) {
+  std::string label = nameOf(model);
+  for (char& c : label) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return label;
+}
+
+void requireValidatable(const Scene& scene, int band) {
+  requireModelled(scene);
   require(scene.ground_albedo[band] == 0.f, "ground albedo", scene.ground_albedo[band],
           "0 for validation: the models know no ground");
+}
+
+Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
+                    const Progress& progress) {
+  requireValidatable(scene, effort.band);
+  const auto band = effort.band;
   Validation result{.scene = scene, .effort = effort};
   const LeafGeometry geometry = leafGeometry(scene, stand);
   result.depths = meanDepths(geometry);
@@ -62,8 +79,8 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
     const auto start = std::chrono::steady_clock::now();
     of_model.irradiance = leafIrradiance(model, geometry, result.optics());
     of_model.shade_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    of_model.prepare_seconds =
-        stand.light_seconds + geometry.depth_seconds + (model == Model::sppg ? stand.compensation_seconds : 0.);
+    of_model.prepare_seconds = stand.light_seconds + geometry.depth_seconds +
+                               (model == Model::sppg ? stand.compensation_seconds + geometry.compensation_seconds : 0.);
     of_model.errors = modelErrors(of_model.irradiance, result.reference.leaf_irradiance, result.categories);
   }
   return result;

@@ -43,7 +43,14 @@ struct Validation {
   LeafOptics optics() const { return scene.leaf[static_cast<std::size_t>(effort.band)]; }
 };
 
-// `stand` is standGeometry() of the scene. Throws InvalidInput when the ground reflects: the models know no ground.
+std::string kindOf(const Scene& scene);  // "single tree", "16 trees" or "periodic"
+std::string labelOf(Model model);        // "SS", "SPP", "SPPG"
+
+// Throws InvalidInput on a scene that cannot be validated: requireModelled(), or a ground that reflects in this band,
+// of which the models know nothing.
+void requireValidatable(const Scene& scene, int band);
+
+// `stand` is standGeometry() of the scene. Throws InvalidInput as requireValidatable() does.
 Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
                     const Progress& progress = {});
 

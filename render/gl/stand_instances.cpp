@@ -2,13 +2,11 @@
 
 #include <glm/common.hpp>
 
-#include "grid/neighbours.hpp"
-
 namespace sunfleck::gl {
 namespace {
 
 // All trees, copies up to `reach` periods away included; those of the stand itself first.
-std::vector<Neighbour> treesWithin(const Stand& stand, int reach) {
+std::vector<Neighbour> treesWithin(const Stand& stand, glm::ivec2 reach) {
   std::vector<Neighbour> trees;
   const auto place = [&](glm::vec3 shift) {
     for (std::size_t t = 0; t < stand.trees.size(); ++t)
@@ -16,8 +14,8 @@ std::vector<Neighbour> treesWithin(const Stand& stand, int reach) {
   };
   place(glm::vec3(0.f));
   if (!stand.period) return trees;
-  for (int y = -reach; y <= reach; ++y)
-    for (int x = -reach; x <= reach; ++x)
+  for (int y = -reach.y; y <= reach.y; ++y)
+    for (int x = -reach.x; x <= reach.x; ++x)
       if (x != 0 || y != 0)
         place({static_cast<float>(x) * stand.period->x, static_cast<float>(y) * stand.period->y, 0});
   return trees;
@@ -42,10 +40,11 @@ bool meets(const SunMap& map, glm::vec3 displacement, glm::vec2 centre, glm::vec
 
 }  // namespace
 
-StandInstances standInstances(const Stand& stand, const SunMap& map, const GroundDisc& ground) {
+StandInstances standInstances(const Stand& stand, glm::ivec2 periods_around, const SunMap& map,
+                              const GroundDisc& ground) {
   StandInstances result;
-  const std::vector<Neighbour> drawn = treesWithin(stand, 1);
-  const std::vector<Neighbour> all = treesWithin(stand, kPeriodsAround);
+  const std::vector<Neighbour> drawn = treesWithin(stand, glm::ivec2(1));
+  const std::vector<Neighbour> all = treesWithin(stand, periods_around);
 
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (i >= stand.trees.size()) {  // a copy stands in the same light as its tree

@@ -24,7 +24,7 @@ struct Instance {
 
 // (R4) Who is drawn, and who may shade whom: two trees share light when the pictures of their boxes along the sun
 // overlap (Eq. 31's neighbour lists). A periodic stand is drawn with one ring of copies around it; light is shared over
-// at most kPeriodsAround periods.
+// `periods_around` periods in x and y.
 struct StandInstances {
   std::vector<Instance> drawn;        // trees of the stand first
   Instance ground;                    // its neighbours: all trees whose shadow may fall on the disc
@@ -38,6 +38,7 @@ struct GroundDisc {
 };
 
 // Rotations are ignored: a map along the sun is a rotated tree's own only when the sun turns with the tree.
-StandInstances standInstances(const Stand& stand, const SunMap& map, const GroundDisc& ground);
+StandInstances standInstances(const Stand& stand, glm::ivec2 periods_around, const SunMap& map,
+                              const GroundDisc& ground);
 
 }  // namespace sunfleck::gl

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 
+#include "grid/neighbours.hpp"
 #include "render/gl/buffer.hpp"
 #include "render/gl/detail/frame_data.hpp"
 #include "render/gl/framebuffer.hpp"
@@ -151,7 +152,7 @@ struct TreeRenderer::Resources {
       : context(&current),
         ground(groundOf(scene)),
         has_ground(anyAbove(scene.ground_albedo, 0.f)),
-        stand(standInstances(scene.stand, sun, ground)),
+        stand(standInstances(scene.stand, periodsAround(scene.stand, leafBounds(*scene.tree)), sun, ground)),
         vertex_count(static_cast<GLsizei>(corners.size())),
         vertices(corners),
         instances(instanceData(stand)),
