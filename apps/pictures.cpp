@@ -7,15 +7,7 @@ namespace sunfleck::apps {
 Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model) {
   gl::ShadingData data{.sun = &stand.light, .cells = &stand.cells};
   for (const std::vector<float>& of_tree : stand.compensation) data.compensation.emplace_back(of_tree);
-  switch (model) {
-    case Model::ss:
-      return gl::treePicture(scene, data, gl::ShadingModel::ss);
-    case Model::spp:
-      return gl::treePicture(scene, data, gl::ShadingModel::spp);
-    case Model::sppg:
-      break;
-  }
-  return gl::treePicture(scene, data, gl::ShadingModel::sppg);
+  return gl::treePicture(scene, data, model);
 }
 
 void showGround(Scene& scene) {

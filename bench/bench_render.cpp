@@ -13,7 +13,6 @@
 namespace {
 
 using namespace sunfleck;
-using gl::ShadingModel;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
@@ -44,7 +43,7 @@ double meanRadiance(const Image& image) {
 
 // One picture of 512 x 512 pixels and 4 samples each, from the camera to floats in memory. G is 1 throughout: its value
 // does not change the time.
-void picture(benchmark::State& state, ShadingModel model) {
+void picture(benchmark::State& state, Model model) {
   const Scene scene = sceneOf(randomCrown({}, 1));
   const DeepOpacityMap map(*scene.tree, scene.sun(), 512);
   const gl::Context context;
@@ -55,7 +54,7 @@ void picture(benchmark::State& state, ShadingModel model) {
   // A crown like this one has, by Monte Carlo, a mean radiance of .0208; SS shows under a half of it, and SPP a sixth
   // too much.
   const double mean = meanRadiance(renderer.picture(*scene.camera, model));
-  const double expected = model == ShadingModel::ss ? 0.0094 : 0.0243;
+  const double expected = model == Model::ss ? 0.0094 : 0.0243;
   if (std::abs(mean / expected - 1.) > 0.05) {
     state.SkipWithError("wrong answer");
     return;
@@ -65,14 +64,8 @@ void picture(benchmark::State& state, ShadingModel model) {
   state.SetItemsProcessed(state.iterations());
 }
 
-BENCHMARK_CAPTURE(picture, ss, ShadingModel::ss)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
-BENCHMARK_CAPTURE(picture, spp, ShadingModel::spp)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime();
-BENCHMARK_CAPTURE(picture, sppg, ShadingModel::sppg)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime();
+BENCHMARK_CAPTURE(picture, ss, Model::ss)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK_CAPTURE(picture, spp, Model::spp)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK_CAPTURE(picture, sppg, Model::sppg)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace

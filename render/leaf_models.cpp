@@ -31,18 +31,6 @@ float irradianceOf(Model model, float projection, float depth, float thickness, 
 
 }  // namespace
 
-std::string nameOf(Model model) {
-  switch (model) {
-    case Model::ss:
-      return "ss";
-    case Model::spp:
-      return "spp";
-    case Model::sppg:
-      return "sppg";
-  }
-  return {};
-}
-
 LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand) {
   const TreeMesh& mesh = *scene.tree;
   const auto start = Clock::now();

@@ -5,14 +5,11 @@
 #include <vector>
 
 #include "grid/leaf_depth.hpp"
+#include "render/model.hpp"
 #include "render/scene.hpp"
 #include "render/stand_geometry.hpp"
 
 namespace sunfleck {
-
-enum class Model { ss, spp, sppg };
-inline constexpr std::array kModels{Model::ss, Model::spp, Model::sppg};
-std::string nameOf(Model model);
 
 // What the models know of the leaves of each tree of a stand: all that does not depend on leaf optics.
 struct LeafGeometry {

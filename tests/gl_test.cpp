@@ -25,7 +25,6 @@
 namespace {
 
 using namespace sunfleck;
-using gl::ShadingModel;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 // A radiance is a handful of float operations away from its closed form; where exponentials take part, llvmpipe's own
@@ -95,7 +94,7 @@ Camera cameraFrom(float elevation_degrees, float half_width = 0.5f, int size = 4
   return {.elevation = elevation_degrees * kPi / 180.f, .half_width = half_width, .width = size, .height = size};
 }
 
-Image picture(const Scene& scene, const gl::SunMap& map, const Camera& camera, ShadingModel model,
+Image picture(const Scene& scene, const gl::SunMap& map, const Camera& camera, Model model,
               const gl::CompensationCells& cells = {}) {
   const gl::Context context;
   return gl::TreeRenderer(context, scene, map, cells).picture(camera, model);
@@ -266,7 +265,7 @@ TEST(R3_TreePicture, OfALeafInFullLight) {
   const Rectangles leaf({kWide});
   const Scene scene = leaf.scene();
   for (const bool above : {true, false}) {
-    const Image image = picture(scene, leaf.map, cameraFrom(above ? 90.f : -90.f), ShadingModel::ss);
+    const Image image = picture(scene, leaf.map, cameraFrom(above ? 90.f : -90.f), Model::ss);
     ASSERT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
     const glm::vec3 expected =
         perBand(scene, [&](const LeafOptics& o) { return (above ? o.reflectance : o.transmittance) / kPi; });
@@ -282,7 +281,7 @@ TEST(R3_TreePicture, OfALeafInFullLight) {
 TEST(R3_TreePicture, OfALeafAloneBySpp) {
   const Rectangles leaf({kWide});
   const Scene scene = leaf.scene();
-  const Image image = picture(scene, leaf.map, cameraFrom(90.f), ShadingModel::spp);
+  const Image image = picture(scene, leaf.map, cameraFrom(90.f), Model::spp);
   const glm::vec3 expected = perBand(scene, [](const LeafOptics& o) {
     return spp::leafRadiance(1.f, 1.f, 1.f, diffuse(0.f, 1.f, o.albedo()), o.reflectance, o.transmittance);
   });
@@ -304,10 +303,9 @@ TEST(R3_TreePicture, OfALeafInShadow) {
     const gl::SunMap& map = as_stand ? one.map : two.map;
     const gl::CompensationCells cells{
         .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {scene.stand.trees.size(), quarter}};
-    expectRadiance(picture(scene, map, camera, ShadingModel::ss), 2, 2, glm::vec3(0.f), 0.f);
+    expectRadiance(picture(scene, map, camera, Model::ss), 2, 2, glm::vec3(0.f), 0.f);
     for (const float compensation : {1.f, 0.25f}) {
-      const Image image =
-          picture(scene, map, camera, compensation == 1.f ? ShadingModel::spp : ShadingModel::sppg, cells);
+      const Image image = picture(scene, map, camera, compensation == 1.f ? Model::spp : Model::sppg, cells);
       const glm::vec3 expected =
           compensation * perBand(scene, [](const LeafOptics& o) {
             return spp::leafRadiance(-1.f, 0.f, -1.f, diffuse(1.f, 2.f, o.albedo()), o.reflectance, o.transmittance);
@@ -322,12 +320,12 @@ TEST(R3_TreePicture, OfALeafInShadow) {
 TEST(R3_TreePicture, FollowsTheMapsOrigin) {
   Rectangles half({{{-2.f, -2.f}, {0.f, 2.f}, 1.f}, {{-2.f, -2.f}, {2.f, 2.f}, 0.f}});
   const Camera camera = cameraFrom(-90.f, 0.5f * half.map.pixel_size, 8);
-  const Image before = picture(half.scene(), half.map, camera, ShadingModel::spp);
+  const Image before = picture(half.scene(), half.map, camera, Model::spp);
   half.map.origin = {0.5f, -0.25f, 4.f};
   half.map.corner += glm::vec2(half.map.origin);
   for (Crossing& crossing : half.crossings) crossing.depth += half.map.origin.z;
   for (float& depth : half.wood_depth) depth += half.map.origin.z;
-  const Image after = picture(half.scene(), half.map, camera, ShadingModel::spp);
+  const Image after = picture(half.scene(), half.map, camera, Model::spp);
   for (std::size_t i = 0; i < before.values.size(); ++i) EXPECT_NEAR(after.values[i], before.values[i], kShading);
 }
 
@@ -340,10 +338,10 @@ TEST(R3_TreePicture, ReadsTheCellsOfEachTree) {
   const gl::CompensationCells cells{
       .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {none, all}};
   Camera camera = cameraFrom(-90.f);
-  expectRadiance(picture(scene, two.map, camera, ShadingModel::sppg, cells), 2, 2, glm::vec3(0.f), 0.f);
+  expectRadiance(picture(scene, two.map, camera, Model::sppg, cells), 2, 2, glm::vec3(0.f), 0.f);
   camera.target.x = 10.f;
-  const Image lit = picture(scene, two.map, camera, ShadingModel::sppg, cells);
-  const Image spp = picture(scene, two.map, camera, ShadingModel::spp, cells);
+  const Image lit = picture(scene, two.map, camera, Model::sppg, cells);
+  const Image spp = picture(scene, two.map, camera, Model::spp, cells);
   EXPECT_NEAR(lit.values[lit.at(2, 2, 1)], spp.values[spp.at(2, 2, 1)], kShading);
 }
 
@@ -354,7 +352,7 @@ TEST(R3_TreePicture, SmoothsTheRimOfAShadow) {
   const Rectangles half({{{-2.f, -2.f}, {0.f, 2.f}, 1.f}, {{-2.f, -2.f}, {2.f, 2.f}, 0.f}});
   const Scene scene = half.scene();
   const float map_pixel = half.map.pixel_size;
-  const Image image = picture(scene, half.map, cameraFrom(-90.f, 0.5f * map_pixel, 8), ShadingModel::ss);
+  const Image image = picture(scene, half.map, cameraFrom(-90.f, 0.5f * map_pixel, 8), Model::ss);
   // Seen from below with the camera at azimuth 0, the picture's up is +x: rows run from x > 0 down.
   for (int row = 0; row < 8; ++row) {
     const float lit = 1.f - (static_cast<float>(row) + 0.5f) / 8.f;
@@ -369,9 +367,8 @@ TEST(R3_TreePicture, OfWood) {
   const Rectangles tree({{kWide.low, kWide.high, 1.f, true}, {kWide.low, kWide.high, 0.f}});
   Scene scene = tree.scene();
   scene.wood_reflectance = {0.2f, 0.3f, 0.4f};
-  expectRadiance(picture(scene, tree.map, cameraFrom(90.f), ShadingModel::ss), 2, 2, scene.wood_reflectance / kPi,
-                 kRounding);
-  expectRadiance(picture(scene, tree.map, cameraFrom(-90.f), ShadingModel::ss), 2, 2, glm::vec3(0.f), 0.f);
+  expectRadiance(picture(scene, tree.map, cameraFrom(90.f), Model::ss), 2, 2, scene.wood_reflectance / kPi, kRounding);
+  expectRadiance(picture(scene, tree.map, cameraFrom(-90.f), Model::ss), 2, 2, glm::vec3(0.f), 0.f);
 }
 
 // Pixel that a point falls in.
@@ -393,7 +390,7 @@ TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
   const Camera camera = cameraFrom(30.f, 6.f, 120);
   const glm::ivec2 shadow = pixelOf(camera, {0.5f, 0.f, 0.f}), sun = pixelOf(camera, {1.7f, -1.3f, 0.f}),
                    beyond = pixelOf(camera, {0.f, 5.5f, 0.f});
-  const Image ss = picture(scene, tree.map, camera, ShadingModel::ss);
+  const Image ss = picture(scene, tree.map, camera, Model::ss);
   expectRadiance(ss, shadow.x, shadow.y, glm::vec3(0.f), 0.f);
   expectRadiance(ss, sun.x, sun.y, scene.ground_albedo / kPi, kRounding);
   EXPECT_EQ(ss.values[ss.at(shadow.x, shadow.y, 3)], 1.f);
@@ -402,7 +399,7 @@ TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
   // A plane gathers half the power of a half-sphere of uniform radiance.
   const glm::vec3 passed =
       perBand(scene, [](const LeafOptics& o) { return 0.5f * diffuse(1.f, 1.f, o.albedo()).down; });
-  const Image spp = picture(scene, tree.map, camera, ShadingModel::spp);
+  const Image spp = picture(scene, tree.map, camera, Model::spp);
   expectRadiance(spp, shadow.x, shadow.y, scene.ground_albedo * passed / kPi, kShading);
   EXPECT_GT(passed.g, 0.05f);
 
@@ -410,11 +407,11 @@ TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
   const std::vector<float> half_above{0.f, 0.f, 0.f, 0.f, 0.5f, 0.5f, 0.5f, 0.5f};
   const gl::CompensationCells cells{
       .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {half_above}};
-  const Image sppg = picture(scene, tree.map, camera, ShadingModel::sppg, cells);
+  const Image sppg = picture(scene, tree.map, camera, Model::sppg, cells);
   expectRadiance(sppg, shadow.x, shadow.y, 0.5f * scene.ground_albedo * passed / kPi, kShading);
 
   scene.ground_albedo = glm::vec3(0.f);
-  const Image none = picture(scene, tree.map, camera, ShadingModel::ss);
+  const Image none = picture(scene, tree.map, camera, Model::ss);
   EXPECT_EQ(none.values[none.at(sun.x, sun.y, 3)], 0.f);
 }
 
@@ -436,15 +433,15 @@ TEST(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
     const gl::ShadingData data{.sun = &map, .cells = &cells, .compensation = {quarter}};
 
     const float cosine = std::cos(scene.sun_zenith);
-    expectRadiance(gl::treePicture(scene, data, ShadingModel::ss), 1, 1,
+    expectRadiance(gl::treePicture(scene, data, Model::ss), 1, 1,
                    cosine * perBand(scene, [](const LeafOptics& o) { return o.reflectance / kPi; }), kRounding);
     scene.camera->target = {aside, 0.f};
-    expectRadiance(gl::treePicture(scene, data, ShadingModel::ss), 1, 1, glm::vec3(0.f), 0.f);
+    expectRadiance(gl::treePicture(scene, data, Model::ss), 1, 1, glm::vec3(0.f), 0.f);
     const glm::vec3 expected = perBand(scene, [&](const LeafOptics& o) {
       return 0.25f *
              spp::leafRadiance(cosine, 0.f, cosine, diffuse(1.f, 2.f, o.albedo()), o.reflectance, o.transmittance);
     });
-    expectRadiance(gl::treePicture(scene, data, ShadingModel::sppg), 1, 1, expected, kShading);
+    expectRadiance(gl::treePicture(scene, data, Model::sppg), 1, 1, expected, kShading);
   }
 }
 
@@ -454,8 +451,8 @@ TEST(R3_TreePicture, IsDeterministic) {
   Scene scene = tree.scene();
   scene.ground_albedo = glm::vec3(0.2f);
   const Camera camera = cameraFrom(40.f, 2.f, 40);
-  const Image one = picture(scene, tree.map, camera, ShadingModel::spp);
-  const Image two = picture(scene, tree.map, camera, ShadingModel::spp);
+  const Image one = picture(scene, tree.map, camera, Model::spp);
+  const Image two = picture(scene, tree.map, camera, Model::spp);
   EXPECT_EQ(one.values, two.values);
 }
 
@@ -465,7 +462,7 @@ TEST(R3_TreePicture, HasNoSeams) {
   Camera camera = cameraFrom(90.f, 0.5f, 1100);
   camera.height = 2;
   camera.target = {0.f, 1.f, 0.f};  // the picture's right is +y
-  const Image image = picture(leaf.scene(), leaf.map, camera, ShadingModel::ss);
+  const Image image = picture(leaf.scene(), leaf.map, camera, Model::ss);
   for (int x = 0; x < 1100; ++x) ASSERT_EQ(image.values[image.at(x, 1, 3)], x < 550 ? 1.f : 0.f) << x;
 }
 
@@ -475,13 +472,13 @@ TEST(R3_TreePicture, RefusesWhatItCannotDraw) {
   Scene scene = leaf.scene();
   scene.camera = cameraFrom(90.f);
   scene.camera->half_width = 0.f;
-  EXPECT_THROW(gl::treePicture(scene, {}, ShadingModel::ss), InvalidInput);
+  EXPECT_THROW(gl::treePicture(scene, {}, Model::ss), InvalidInput);
   scene.camera = cameraFrom(90.f, 1.f, 0);
-  EXPECT_THROW(gl::treePicture(scene, {}, ShadingModel::ss), InvalidInput);
+  EXPECT_THROW(gl::treePicture(scene, {}, Model::ss), InvalidInput);
   scene.camera = cameraFrom(90.f);
-  EXPECT_THROW(gl::treePicture(scene, {}, ShadingModel::ss), std::invalid_argument);  // no map
+  EXPECT_THROW(gl::treePicture(scene, {}, Model::ss), std::invalid_argument);  // no map
   scene.stand.trees[0].rotation = 1.f;
-  EXPECT_THROW(gl::treePicture(scene, {}, ShadingModel::ss), InvalidInput);
+  EXPECT_THROW(gl::treePicture(scene, {}, Model::ss), InvalidInput);
 }
 
 // (R4) Check who shades whom: with the sun overhead trees 3 m apart do not meet a map 4 m wide at 5 m distance; a low

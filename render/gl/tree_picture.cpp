@@ -26,10 +26,10 @@ void requireDrawable(const Scene& scene, const Camera& camera) {
 }
 
 // These are the program's own mistakes, not the user's.
-void requireFitting(const Scene& scene, const ShadingData& data, ShadingModel model) {
+void requireFitting(const Scene& scene, const ShadingData& data, Model model) {
   if (!data.sun || glm::length(data.sun->along() - scene.sun()) > kSameDirection)
     throw std::invalid_argument("treePicture: the opacity map is not along the scene's sun");
-  if (model != ShadingModel::sppg) return;
+  if (model != Model::sppg) return;
   bool fits = data.cells && data.compensation.size() == scene.stand.trees.size();
   for (const std::span<const float>& values : data.compensation) fits = fits && values.size() == data.cells->count();
   if (!fits) throw std::invalid_argument("treePicture: G is not given for every cell of every tree");
@@ -37,7 +37,7 @@ void requireFitting(const Scene& scene, const ShadingData& data, ShadingModel mo
 
 }  // namespace
 
-Image treePicture(const Scene& scene, const ShadingData& data, ShadingModel model) {
+Image treePicture(const Scene& scene, const ShadingData& data, Model model) {
   const Camera camera = cameraOf(scene);
   requireDrawable(scene, camera);
   requireFitting(scene, data, model);
@@ -50,7 +50,7 @@ Image treePicture(const Scene& scene, const ShadingData& data, ShadingModel mode
                    .crossings = data.sun->crossings(),
                    .wood_depth = data.sun->woodDepth()};
   CompensationCells cells;
-  if (model == ShadingModel::sppg)
+  if (model == Model::sppg)
     cells = {.low = data.cells->low,
              .cell_size = data.cells->cell_size,
              .size = data.cells->size,

@@ -6,7 +6,7 @@
 #include "core/image.hpp"
 #include "grid/deep_opacity_map.hpp"
 #include "grid/instance_cells.hpp"
-#include "render/gl/shading_model.hpp"
+#include "render/model.hpp"
 #include "render/scene.hpp"
 
 namespace sunfleck::gl {
@@ -22,6 +22,6 @@ struct ShadingData {
 // before a black sky. A periodic stand is drawn with one ring of copies; ground of albedo 0 in all bands is left out.
 // Channels R, G, B: linear radiance; A: coverage. Needs no display. Throws InvalidInput on a camera that sees nothing
 // or a rotated tree, and std::runtime_error when there is no OpenGL 4.5.
-Image treePicture(const Scene& scene, const ShadingData& data, ShadingModel model);
+Image treePicture(const Scene& scene, const ShadingData& data, Model model);
 
 }  // namespace sunfleck::gl

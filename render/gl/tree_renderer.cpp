@@ -266,7 +266,7 @@ void addTile(Image& image, const std::vector<float>& samples, int width, glm::iv
 
 }  // namespace
 
-Image TreeRenderer::picture(const Camera& camera, ShadingModel model) const {
+Image TreeRenderer::picture(const Camera& camera, Model model) const {
   const Resources& r = *resources_;
   const Axes axes = viewAxes(camera);
   FrameData frame = r.frame;

@@ -6,8 +6,8 @@
 
 #include "core/image.hpp"
 #include "render/gl/context.hpp"
-#include "render/gl/shading_model.hpp"
 #include "render/gl/sun_map.hpp"
+#include "render/model.hpp"
 #include "render/scene.hpp"
 
 namespace sunfleck::gl {
@@ -32,7 +32,7 @@ class TreeRenderer {
 
   // Channels R, G, B: linear radiance [W m^-2 sr^-1 per W m^-2 of sun], the mean over each pixel of 2 x 2 samples; A:
   // coverage [1]. The same picture is the same bits on the same driver.
-  Image picture(const Camera& camera, ShadingModel model) const;
+  Image picture(const Camera& camera, Model model) const;
 
  private:
   struct Resources;
