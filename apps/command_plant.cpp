@@ -97,7 +97,8 @@ void addPlant(CLI::App& app, RunOptions& options, int& status) {
   auto plant = std::make_shared<PlantOptions>();
   CLI::App* command =
       addCommand(app, options, "plant", "Grow a tree, or read one, and tell its leaves; write it as OBJ");
-  command->add_option("input", plant->input, "A mesh to read (.obj, .ply) instead of growing a tree");
+  CLI::Option* input =
+      command->add_option("input", plant->input, "A mesh to read (.obj, .ply) instead of growing a tree");
   command->add_option("--species", plant->species,
                       fmt::format("What to grow: {} (default cherry); --seed grows another one of it",
                                   fmt::join(speciesNames(), ", ")));
@@ -106,9 +107,11 @@ void addPlant(CLI::App& app, RunOptions& options, int& status) {
                       "Materials or groups of the mesh that are leaves, such as 'leaf*'; '*' takes all");
   command->add_option("--wood", plant->rules.wood, "Materials or groups of the mesh that are wood");
   command->add_option("--scale", plant->rules.scale, "Metres per unit of the mesh (default 1)")
-      ->check(numberIn(1e-9, 1e9, "above 0"));
+      ->check(numberIn(1e-9, 1e9, "in [1e-9, 1e9]"));
   command->add_option("--up", plant->up, "Upward axis of the mesh: z or y (default z)")
       ->check(CLI::IsMember({"z", "y"}));
+  command->get_option("--species")->excludes(input);
+  for (const char* of_input : {"--leaf", "--wood", "--scale", "--up"}) command->get_option(of_input)->needs(input);
   command->callback([plant, &options, &status] { status = runPlant(*plant, options); });
 }
 

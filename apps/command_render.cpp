@@ -24,7 +24,7 @@ struct RenderOptions {
 };
 
 int runRender(const RenderOptions& options, const RunOptions& run) {
-  requireWritable(options.output);
+  requirePictureName(options.output);
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
@@ -65,9 +65,9 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
                    "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default)")
       ->check(CLI::IsMember({"ss", "spp", "sppg"}));
   command->add_option("--exposure", render->exposure, "Factor from radiance to brightness in a .png (default 3)")
-      ->check(numberIn(1e-6, 1e6, "above 0"));
+      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
-      ->check(numberIn(1., 8192., "a whole number, 1 to 8192"));
+      ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
   command->callback([render, &options, &status] { status = runRender(*render, options); });
 }
 

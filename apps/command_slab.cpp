@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -61,7 +63,7 @@ constexpr const char* kBatchHeader = "g,omega,thickness,mu0";
 // One case a line; the answer of each is printed when all lines have been found right.
 int runBatch(const std::string& file) {
   std::ifstream in(file);
-  if (!in) throw InvalidInput(file + ": cannot be read");
+  if (!in || !std::filesystem::is_regular_file(file)) throw InvalidInput(file + ": cannot be read");
   std::string line, output = std::string(kBatchHeader) + ",reflectance,transmittance,direct\n";
   std::getline(in, line);
   if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -131,6 +133,17 @@ int runSlab(const SlabOptions& options, bool json) {
   return 0;
 }
 
+// A number, infinity included: CLI11 takes an empty text for 0.
+CLI::Validator number() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0.;
+        return !text.empty() && CLI::detail::lexical_cast(text, value) ? std::string()
+                                                                       : "\"" + text + "\": must be a number";
+      },
+      "");
+}
+
 }  // namespace
 
 void addSlab(CLI::App& app, RunOptions& options, int& status) {
@@ -138,12 +151,17 @@ void addSlab(CLI::App& app, RunOptions& options, int& status) {
   CLI::App* command = addCommand(app, options, "slab", "Solve one plane-parallel slab, or a file of them");
   command->add_option("--model", slab->model, "spp: the simplified plane-parallel model (default)")
       ->check(CLI::IsMember({"spp"}));
-  command->add_option("--omega", slab->albedo, "Single-scattering albedo, 0 to 1 (default 0.95)");
-  command->add_option("--g", slab->asymmetry,
-                      "Asymmetry of Henyey-Greenstein scattering, above -1, below 1 (default 0)");
-  command->add_option("--thickness", slab->thickness, "Optical thickness, above 0; inf for a half space (default 10)");
-  command->add_option("--mu0", slab->mu0, "|cos| of the beam to the slab's normal, above 0, at most 1 (default 1)");
-  command->add_option("--depths", slab->depths, "Optical depths to print the light at, such as 0,1,5")->delimiter(',');
+  command->add_option("--omega", slab->albedo, "Single-scattering albedo, 0 to 1 (default 0.95)")->check(number());
+  command
+      ->add_option("--g", slab->asymmetry, "Asymmetry of Henyey-Greenstein scattering, above -1, below 1 (default 0)")
+      ->check(number());
+  command->add_option("--thickness", slab->thickness, "Optical thickness, above 0; inf for a half space (default 10)")
+      ->check(number());
+  command->add_option("--mu0", slab->mu0, "|cos| of the beam to the slab's normal, above 0, at most 1 (default 1)")
+      ->check(number());
+  command->add_option("--depths", slab->depths, "Optical depths to print the light at, such as 0,1,5")
+      ->delimiter(',')
+      ->check(number());
   command->add_option("--batch", slab->batch,
                       "CSV with columns g,omega,thickness,mu0, written back with reflectance,transmittance,direct");
   command->callback([slab, &options, &status] { status = runSlab(*slab, options.json); });

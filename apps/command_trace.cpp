@@ -58,8 +58,8 @@ nlohmann::ordered_json known(double value) {
 }
 
 int runTrace(const TraceOptions& options, const RunOptions& run) {
-  for (const std::string& file : {options.leaves, options.picture})
-    if (!file.empty()) requireWritable(file);
+  if (!options.leaves.empty()) requireNamed(options.leaves, ".csv");
+  if (!options.picture.empty()) requirePictureName(options.picture);
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
@@ -137,7 +137,7 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   command->add_option("--picture", trace->picture, "Picture to write: .exr (radiances) or .png");
   command->add_flag("--only-picture", trace->only_picture, "Trace the picture alone")->excludes("--leaves");
   command->add_option("--exposure", trace->exposure, "Factor from radiance to brightness in a .png (default 3)")
-      ->check(numberIn(1e-6, 1e6, "above 0"));
+      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
   command->add_flag("--without-wood", trace->without_wood, "Leave the wood out");
   command->callback([trace, &options, &status] { status = runTrace(*trace, options); });
 }

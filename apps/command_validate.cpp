@@ -201,13 +201,13 @@ void addValidate(CLI::App& app, RunOptions& options, int& status) {
   command->add_flag("--no-pictures", validate->no_pictures, "Make no pictures");
   command
       ->add_option("--map", validate->geometry.light_resolution, "Pixels along the light's opacity map (default 512)")
-      ->check(numberIn(1., 8192., "a whole number, 1 to 8192"));
+      ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
   command
       ->add_option("--directions", validate->geometry.sample_directions,
                    "Sample directions of the G-factor (default 22)")
       ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
   command->add_option("--cells", validate->geometry.cells, "Cells along the longest side of a tree (default 16)")
-      ->check(numberIn(1., 256., "a whole number, 1 to 256"));
+      ->check(numberIn(1., 64., "a whole number, 1 to 64"));
   command->callback([validate, &options, &status] { status = runValidate(*validate, options); });
 }
 

@@ -23,7 +23,7 @@ struct VoxelizeOptions {
 constexpr float kCellsAlongTree = 128.f;
 
 int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
-  if (!options.output.empty()) requireWritable(options.output);
+  if (!options.output.empty()) requireNamed(options.output, ".vdb");
   const bool from_grid = std::filesystem::path(options.scene.scene).extension() == ".vdb";
   double mesh_area = 0., seconds = 0.;
   std::string source = options.scene.scene;
@@ -71,7 +71,7 @@ void addVoxelize(CLI::App& app, RunOptions& options, int& status) {
   addSceneOptions(*command, voxelize->scene);
   command->add_option("-o,--output", voxelize->output, "File to write: .vdb");
   command->add_option("--cell-size", voxelize->cell_size, "Side of a cell in metres (default: 1/128 of the tree)")
-      ->check(numberIn(1e-6, 1e6, "above 0 m, at most 1e6"));
+      ->check(numberIn(1e-5, 1e6, "in [1e-5, 1e6] m"));
   command->callback([voxelize, &options, &status] { status = runVoxelize(*voxelize, options); });
 }
 

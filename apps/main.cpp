@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <iterator>
 #include <string_view>
 #include <vector>
@@ -39,13 +42,16 @@ bool asksForSceneHelp(int count, char** arguments) {
 }
 
 // What was typed, last word first as CLI11 takes it; options without a command are those of validate.
-std::vector<std::string> withCommand(int count, char** arguments) {
+std::vector<std::string> withCommand(const CLI::App& app, int count, char** arguments) {
   std::vector<std::string> words(std::make_reverse_iterator(arguments + count),
                                  std::make_reverse_iterator(arguments + 1));
   static constexpr std::array own{"-h", "--help", "--version"};
-  const bool has_command =
-      !words.empty() && (words.back()[0] != '-' || std::find(own.begin(), own.end(), words.back()) != own.end());
-  if (!has_command) words.emplace_back("validate");
+  const auto saysWhatToDo = [&](const std::string& word) {
+    return std::find(own.begin(), own.end(), word) != own.end() ||
+           !app.get_subcommands([&](const CLI::App* command) { return command->get_name() == word; }).empty();
+  };
+  const bool starts_with_option = words.empty() || words.back().starts_with('-');
+  if (starts_with_option && std::none_of(words.begin(), words.end(), saysWhatToDo)) words.emplace_back("validate");
   return words;
 }
 
@@ -74,7 +80,7 @@ int run(int count, char** arguments) {
   apps::addTrace(app, options, status);
   apps::addRender(app, options, status);
   try {
-    app.parse(withCommand(count, arguments));
+    app.parse(withCommand(app, count, arguments));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return wrongInput(std::string(e.what()) + " (see: sunfleck --help)");
@@ -87,7 +93,10 @@ int run(int count, char** arguments) {
 int main(int count, char** arguments) {
   apps::catchInterrupts();
   try {
-    return run(count, arguments);
+    const int status = run(count, arguments);
+    if (std::fflush(stdout) == 0) return status;
+    fmt::print(stderr, "sunfleck: the results could not be printed: {}\n", std::strerror(errno));
+    return 1;
   } catch (const sunfleck::InvalidInput& e) {
     return wrongInput(e.what());
   } catch (const std::exception& e) {

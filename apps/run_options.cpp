@@ -11,7 +11,8 @@ CLI::Validator numberIn(double low, double high, const std::string& rule) {
   return CLI::Validator(
       [=](const std::string& text) -> std::string {
         double value = 0.;
-        const bool ok = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= low && value <= high;
+        const bool ok = !text.empty() && CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
+                        value >= low && value <= high;
         return ok ? std::string() : text + ": must be " + rule;
       },
       "");

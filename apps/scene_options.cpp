@@ -35,7 +35,7 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
       ->group(group);
   command.add_option("--wood", options.wood, "Materials or groups of a mesh that are wood")->group(group);
   command.add_option("--scale", options.scale, "Metres per unit of the mesh (default 1)")
-      ->check(numberIn(1e-9, 1e9, "above 0"))
+      ->check(numberIn(1e-9, 1e9, "in [1e-9, 1e9]"))
       ->group(group);
   command.add_option("--up", options.up, "Upward axis of the mesh: z or y (default z)")
       ->check(CLI::IsMember({"z", "y"}))
@@ -69,14 +69,14 @@ void addCameraOptions(CLI::App& command, CameraOptions& options) {
       ->group(group);
   command.add_option("--target", options.target, "Point in the middle of the picture: x y z, in metres")
       ->expected(3)
-      ->check(numberIn(-1e6, 1e6, "a number of metres"))
+      ->check(numberIn(-1e6, 1e6, "in [-1e6, 1e6] m"))
       ->group(group);
   command.add_option("--half-width", options.half_width, "Half of the picture's width in the scene, in metres")
-      ->check(numberIn(1e-6, 1e6, "above 0 m"))
+      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6] m"))
       ->group(group);
   command.add_option("--size", options.size, "Width and height of the picture, in pixels")
       ->expected(2)
-      ->check(numberIn(1., 16384., "a whole number, 1 to 16384"))
+      ->check(numberIn(1., 8192., "a whole number, 1 to 8192"))
       ->group(group);
 }
 

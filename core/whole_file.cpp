@@ -42,6 +42,12 @@ void requireWritable(const fs::path& path) {
   if (access(folderOf(path).c_str(), W_OK | X_OK) != 0) cannotWrite(path, std::strerror(errno));
 }
 
+void requireNamed(const fs::path& path, std::string_view extension) {
+  if (path.extension() != extension)
+    throw InvalidInput(path.string() + ": must be named with the extension " + std::string(extension));
+  requireWritable(path);
+}
+
 void writeWhole(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   requireWritable(path);
   std::error_code failure;

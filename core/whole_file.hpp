@@ -15,4 +15,7 @@ void writeWhole(const std::filesystem::path& path, std::string_view text);
 // Throws InvalidInput unless a file could be written at `path`: to be asked before long work, not after it.
 void requireWritable(const std::filesystem::path& path);
 
+// The same, and unless `path` has this extension, such as ".csv".
+void requireNamed(const std::filesystem::path& path, std::string_view extension);
+
 }  // namespace sunfleck

@@ -116,7 +116,11 @@ void DensityGrid::write(const fs::path& file, const std::string& source) const {
       out.write(openvdb::GridCPtrVec{describedGrid(*cells_, source)});
       out.close();
       std::string bytes = contents(temporary);
-      findFloatGrid(bytes, kName);  // OpenVDB does not tell when the disk is full
+      try {
+        findFloatGrid(bytes, kName);
+      } catch (const std::exception&) {  // OpenVDB does not tell when the disk is full
+        throw std::runtime_error("it did not arrive whole; is the disk full?");
+      }
       seal(bytes);
       std::fstream patch(temporary, std::ios::binary | std::ios::in | std::ios::out);
       patch.write(bytes.data(), static_cast<std::streamsize>(kVdbHeader));

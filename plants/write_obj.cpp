@@ -36,8 +36,14 @@ void writeObj(const std::filesystem::path& path, const TreeMesh& mesh) {
     fmt::format_to(std::back_inserter(text), "v {:.9g} {:.9g} {:.9g}\n", v.x, v.y, v.z);
   writePart(text, "leaf", mesh.leaf_triangles);
   writePart(text, "wood", mesh.wood_triangles);
+  const bool had_materials = std::filesystem::exists(materials);
   writeWhole(materials, kMaterials);
-  writeWhole(path, text);
+  try {
+    writeWhole(path, text);
+  } catch (...) {  // the materials are nothing without the mesh
+    if (!had_materials) std::filesystem::remove(materials);
+    throw;
+  }
 }
 
 }  // namespace sunfleck

@@ -63,16 +63,21 @@ void writeExr(const fs::path& named, const fs::path& file, const Image& image) {
 
 }  // namespace
 
-void writeImage(const fs::path& file, const Image& image, float exposure) {
-  assert(image.values.size() == image.at(0, image.height, 0));
+void requirePictureName(const fs::path& file) {
   const std::string extension = lowered(file.extension().string());
-  if (extension == ".png")
-    writeWhole(file, pngBytes(image, exposure));
-  else if (extension == ".exr")
-    writeWhole(file, [&](const fs::path& temporary) { writeExr(file, temporary, image); });
-  else
+  if (extension != ".png" && extension != ".exr")
     throw InvalidInput(file.string() + ": has the extension \"" + file.extension().string() +
                        "\": a picture's must be .exr or .png");
+  requireWritable(file);
+}
+
+void writeImage(const fs::path& file, const Image& image, float exposure) {
+  assert(image.values.size() == image.at(0, image.height, 0));
+  requirePictureName(file);
+  if (lowered(file.extension().string()) == ".png")
+    writeWhole(file, pngBytes(image, exposure));
+  else
+    writeWhole(file, [&](const fs::path& temporary) { writeExr(file, temporary, image); });
 }
 
 std::string pngBytes(const Image& image, float exposure) {

@@ -12,6 +12,9 @@ namespace sunfleck {
 // the first channel as grey. Throws InvalidInput on another extension or a place that cannot be written.
 void writeImage(const std::filesystem::path& file, const Image& image, float exposure);
 
+// Throws InvalidInput unless a picture could be written at `file`: to be asked before long work.
+void requirePictureName(const std::filesystem::path& file);
+
 // The same PNG as bytes, for embedding in a report.
 std::string pngBytes(const Image& image, float exposure);
 

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <glm/trigonometric.hpp>
+#include <iterator>
 #include <limits>
+#include <string_view>
 
 #include "core/require.hpp"
 #include "plants/random_leaves.hpp"
@@ -50,7 +53,7 @@ void readTree(Scene& scene, detail::SceneTable tree, const std::filesystem::path
     ImportRules rules;
     if (tree.has("leaf")) rules.leaf = {tree.text("leaf", "")};
     if (tree.has("wood")) rules.wood = {tree.text("wood", "")};
-    rules.scale = static_cast<float>(tree.number("scale", 1., 1e-9, 1e9, "above 0"));
+    rules.scale = static_cast<float>(tree.number("scale", 1., 1e-9, 1e9, "in [1e-9, 1e9]"));
     const std::string up = tree.text("up", "z");
     if (up != "z" && up != "y") throw InvalidInput(scene.name + ": tree.up = \"" + up + "\": must be \"z\" or \"y\"");
     rules.up = up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
@@ -67,14 +70,14 @@ void readStand(Scene& scene, detail::SceneTable stand) {
   const glm::vec2 touching = touchingPeriod(*scene.tree);
   const auto sides = [&](const std::string& key) {
     if (!stand.has(key)) return touching;
-    const auto v = stand.numbers(key, 2, 1e-6, 1e6, "two lengths above 0 m: [x, y]");
+    const auto v = stand.numbers(key, 2, 1e-6, 1e6, "two lengths in [1e-6, 1e6] m: [x, y]");
     return glm::vec2(static_cast<float>(v[0]), static_cast<float>(v[1]));
   };
   if (kind == "periodic") {
     if (stand.has("positions")) scene.stand.trees = stand.placements("positions");
     scene.stand.period = sides("period");
   } else if (kind == "grid") {
-    scene.stand.trees = square(stand.count("side", 4, 1000), sides("spacing"));
+    scene.stand.trees = square(stand.count("side", 4, 100), sides("spacing"));
   } else if (kind == "positions") {
     if (!stand.has("positions"))
       throw InvalidInput(scene.name + ": [stand] of kind \"positions\" has no key positions");
@@ -102,15 +105,15 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
   Camera read = kOverview;
   if (camera.has("elevation_deg")) read.elevation = degrees(camera, "elevation_deg", -90., 90., "in [-90, 90]");
   if (camera.has("azimuth_deg")) read.azimuth = degrees(camera, "azimuth_deg", -360., 360., "in [-360, 360]");
-  read.width = camera.count("width", read.width, 16384);
-  read.height = camera.count("height", read.height, 16384);
+  read.width = camera.count("width", read.width, 8192);
+  read.height = camera.count("height", read.height, 8192);
   read = showingAll(scene, read);
   if (camera.has("target")) {
-    const auto v = camera.numbers("target", 3, -1e6, 1e6, "three coordinates [m]");
+    const auto v = camera.numbers("target", 3, -1e6, 1e6, "three coordinates in [-1e6, 1e6] m");
     read.target = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
   }
-  read.half_width =
-      static_cast<float>(camera.number("half_width", static_cast<double>(read.half_width), 1e-6, 1e6, "above 0 m"));
+  read.half_width = static_cast<float>(
+      camera.number("half_width", static_cast<double>(read.half_width), 1e-6, 1e6, "in [1e-6, 1e6] m"));
   camera.done();
   scene.camera = read;
 }
@@ -139,10 +142,29 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   return scene;
 }
 
+// The text of a scene file. toml++ keeps a table within a table for every dot of a key, without bound; no key of ours
+// has more than one.
+std::string readText(const std::filesystem::path& file) {
+  constexpr int kMostDots = 32;
+  if (!std::filesystem::is_regular_file(file)) throw InvalidInput(file.string() + ": must be a file that can be read");
+  std::ifstream in(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (!in) throw InvalidInput(file.string() + ": cannot be read");
+  int line = 1, dots = 0;
+  for (const char c : text) {
+    line += c == '\n';
+    if (std::string_view(",=[]{}#\n").find(c) != std::string_view::npos) dots = 0;
+    if (c == '.' && ++dots > kMostDots)
+      throw InvalidInput(
+          fmt::format("{}:{}: more than {} dots on end: must be a number or a key", file.string(), line, kMostDots));
+  }
+  return text;
+}
+
 // Whatever is wrong, the message begins with the file.
 Scene readToml(const std::filesystem::path& file) {
   try {
-    return readTable(toml::parse_file(file.string()), file);
+    return readTable(toml::parse(readText(file), file.string()), file);
   } catch (const toml::parse_error& e) {
     throw InvalidInput(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
   } catch (const InvalidInput& e) {
@@ -224,7 +246,7 @@ seed = 1
 [stand]
 kind = "single"               # single | periodic | grid | positions
 # period = [8.0, 8.0]         # periodic: sides of the repeated rectangle; the leaves' box if not given
-# side = 4                    # grid: side x side trees, 1 to 1000 ...
+# side = 4                    # grid: side x side trees, 1 to 100 ...
 # spacing = [8.0, 8.0]        # ... this far apart; the leaves' box if not given
 # positions = [[0, 0], [5, 1, 30]]   # positions, periodic: x, y and rotation_deg of each tree
 
@@ -236,7 +258,7 @@ transmittance = 0.475         # 0 to 1
 reflectance = 0.3             # 0 to 1
 
 [ground]
-albedo = 0.0                  # 0 to 1; 0: no ground
+albedo = 0.0                  # 0 to 1; 0: no ground. trace takes it for periodic stands and pictures
 
 [sun]
 zenith_deg = 0.0              # 0 overhead, to 89.9
@@ -247,7 +269,7 @@ azimuth_deg = 0.0             # where the sun stands, from +x towards +y
 # elevation_deg = 10.0        # -90 to 90
 # azimuth_deg = 20.0          # where the camera stands, from +x towards +y
 # half_width = 5.0            # half of the picture's width
-# width = 512                 # pixels, 1 to 16384
+# width = 512                 # pixels, 1 to 8192
 # height = 512
 )";
 }

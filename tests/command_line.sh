@@ -47,7 +47,7 @@ printf "$square"'usemtl whatever\nf 1 2 3 4\n' >unknown.obj
 : >empty.vdb
 seq 1 700 | tr '0-9\n' '\000-\011\377' >garbage.obj
 cp garbage.obj garbage.vdb
-mkdir folder
+mkdir folder folder.toml
 printf '[sun]\nzenit_deg = 3\n' >unknown_key.toml
 printf '[sun]\nzenith_deg = "high"\n' >wrong_type.toml
 printf '[sun]\nzenith_deg = 95\n' >out_of_range.toml
@@ -97,6 +97,16 @@ refuses "no-such-scene" trace no-such-scene
 refuses "short.csv:2" slab --batch short.csv
 refuses "negative.csv:2" slab --batch negative.csv
 refuses "species" plant --species baobab
+refuses "--species" plant leaf.obj --species maple
+refuses ".csv" trace leaf.obj -o x.png
+refuses ".vdb" voxelize leaf.obj -o x.txt
+refuses ".jpg" trace leaf.obj --picture x.jpg
+refuses "number" slab --omega ""
+refuses "--json" --json slab
+refuses "folder" trace folder.toml
+{ printf '['; printf 'a.%.0s' {1..50000}; printf 'b]\n'; } >deep.toml
+refuses "deep.toml:1" trace deep.toml
+"$program" slab >/dev/full 2>/dev/null && fail "slab: lost output is no success"
 printf '[tree]\nfile = "leaf.obj"\n[ground]\nalbedo = 0.2\n' >ground.toml
 printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "positions"\npositions = [[0, 0, 45]]\n' >rotated.toml
 refuses "ground albedo" validate ground.toml

@@ -183,10 +183,10 @@ TEST(D1_DensityGrid, RefusesCellSizesThatCannotBe) {
   for (const float bad : {0.f, -1.f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                           1e-7f, 1e7f, 1e-6f /* 2e6 cells along an axis */})
     EXPECT_THROW(DensityGrid::voxelize(mesh, bad), InvalidInput) << bad;
-  const TreeMesh wide = oneTriangle({0.f, 0.f, 0.f}, {1e5f, 0.f, 0.f}, {0.f, 1e5f, 0.f});
-  EXPECT_THROW(DensityGrid::voxelize(wide, .1f), InvalidInput);  // 5e11 cells
-  const TreeMesh far = oneTriangle({9e5f, 0.f, 0.f}, {9e5f + 1.f, 0.f, 0.f}, {9e5f, 1.f, 0.f});
-  EXPECT_THROW(DensityGrid::voxelize(far, 1e-4f), InvalidInput);  // 9e9 cells from the origin
+  const TreeMesh wide = oneTriangle({0.f, 0.f, 0.f}, {1e4f, 0.f, 0.f}, {0.f, 1e4f, 0.f});
+  EXPECT_THROW(DensityGrid::voxelize(wide, .02f), InvalidInput);  // 1e11 cells
+  const TreeMesh far = oneTriangle({9e3f, 0.f, 0.f}, {9e3f + 1.f, 0.f, 0.f}, {9e3f, 1.f, 0.f});
+  EXPECT_THROW(DensityGrid::voxelize(far, 2e-6f), InvalidInput);  // 4.5e9 cells from the origin
   EXPECT_THROW(DensityGrid::voxelize(TreeMesh{}, .1f), InvalidInput);
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kStyle = R"(<style>
 body{font-family:sans-serif;color:#222;max-width:1180px;margin:2em auto;padding:0 1em;line-height:1.45}
 h1{margin-bottom:.1em}table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .8em;text-align:right;border-bottom:1px solid #ddd}
-td:first-child,th:first-child{text-align:left}.side{display:flex;flex-wrap:wrap;gap:1.2em}figure{margin:0}
+td:nth-child(-n+2),th:nth-child(-n+2){text-align:left;white-space:nowrap}.side{display:flex;flex-wrap:wrap;gap:1.2em}figure{margin:0}
 figcaption{font-size:.9em;color:#555;max-width:560px}img{max-width:100%;background:#000}code{background:#f2f2f2;padding:.1em .3em}
 </style>)";
 
@@ -101,7 +101,8 @@ std::string depthPlot(const Validation& v) {
 std::string facts(const Validation& v) {
   return fmt::format(
       "<p>{}: {} leaves ({} triangles, {:.4g} m² of one side), leaf albedo {:.3g}, sun {:.3g}° from the zenith. "
-      "A leaf lies {:.2f} leaves deep in {:.2f} on average; {} depth-thickness categories hold at least 5 leaves and "
+      "On average the sun's rays cross {:.2f} leaves before a leaf, of {:.2f} on their whole way; {} depth-thickness "
+      "categories hold at least 5 leaves and "
       "leave out "
       "{} leaves. Reference: {:.3g} million paths of light, seed {}{}.</p>\n",
       escapeMarkup(kindOf(v.scene) + " (" + v.scene.source + ")"), v.scene.tree->leaf_count,
@@ -137,7 +138,7 @@ std::string reportHtml(std::span<const Validation> validations, std::span<const 
   if (!pictures.empty()) {
     html += "<h2>Pictures</h2>\n<div class=\"side\">";
     for (const ReportPicture& picture : pictures)
-      html += "<figure><img alt=\"" + escapeMarkup(picture.caption) + "\" width=\"380\" src=\"data:image/png;base64," +
+      html += "<figure><img alt=\"" + escapeMarkup(picture.caption) + "\" width=\"272\" src=\"data:image/png;base64," +
               base64(picture.png) + "\"><figcaption>" + escapeMarkup(picture.caption) + "</figcaption></figure>\n";
     html +=
         "</div>\n<p>All at the same exposure, with the wood and a ground that reflects a sixth of the light. Monte "

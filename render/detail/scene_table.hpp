@@ -70,7 +70,7 @@ class SceneTable {
   // A list of [x, y] or [x, y, rotation_deg].
   std::vector<Placement> placements(const std::string& key) {
     const toml::node* node = take(key);
-    const std::string rule = "a list of [x, y] or [x, y, rotation_deg], at least one";
+    const std::string rule = "a list of [x, y] or [x, y, rotation_deg], at least one, each number in [-1e6, 1e6]";
     if (!node->is_array() || node->as_array()->empty()) refuse(*node, key, rule);
     std::vector<Placement> trees;
     for (const toml::node& item : *node->as_array()) {

@@ -1,5 +1,6 @@
 #include "render/reference/forward_trace.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.hpp"
@@ -175,18 +176,20 @@ ForwardResult traceForward(const RayScene& scene, const TreeMesh& mesh, const Tr
 
   const Stopwatch stopwatch;
   const SunlitFaces faces(geometry, light.sun);
-  const std::uint64_t per_batch = (effort.paths + kTraceBatches - 1) / kTraceBatches;
+  const auto parts = [&](std::uint64_t size) { return (effort.paths + size - 1) / size; };
+  const std::uint64_t batches = std::max<std::uint64_t>(kTraceBatches, parts(kMostBatchPaths));
+  const std::uint64_t per_batch = parts(batches);
   ForwardMeans means(fluxPerArea(geometry, mesh, faces.flux()));
   std::uint64_t paths = 0;
   inOrder(
-      kTraceBatches, effort.threads,
+      batches, effort.threads,
       [&](std::size_t batch, const Stopped& stopped) {
         return BatchTracer(geometry, light, faces, effort.seed, batch).trace(per_batch, stopped);
       },
       [&](std::size_t batch, const Tally& tally) {
         means.add(tally, static_cast<double>(per_batch));
         paths += per_batch;
-        return goOn(progress, static_cast<double>(batch + 1) / kTraceBatches);
+        return goOn(progress, static_cast<double>(batch + 1) / static_cast<double>(batches));
       });
   ForwardResult result = means.result();
   result.paths = paths;

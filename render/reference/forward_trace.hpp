@@ -18,8 +18,10 @@ struct TraceLight {
   float ground_albedo = 0.f;      // Lambertian [1], 0 .. 1
 };
 
-// Paths are traced in this many batches of equal size, whose spread gives the standard errors.
+// Paths are traced in batches of equal size, whose spread gives the standard errors: this many, or more where a batch
+// would be larger than kMostBatchPaths. Between two batches a run can be ended.
 inline constexpr int kTraceBatches = 64;
+inline constexpr std::uint64_t kMostBatchPaths = 65'536;
 
 struct TraceEffort {
   std::uint64_t paths = 1'000'000;  // >= kTraceBatches, rounded up to whole batches
