@@ -16,8 +16,8 @@ namespace {
 constexpr const char* kStyle = R"(<style>
 body{font-family:sans-serif;color:#222;max-width:1180px;margin:2em auto;padding:0 1em;line-height:1.45}
 h1{margin-bottom:.1em}table{border-collapse:collapse;margin:1em 0}td,th{padding:.25em .8em;text-align:right;border-bottom:1px solid #ddd}
-td:nth-child(-n+2),th:nth-child(-n+2){text-align:left;white-space:nowrap}.side{display:flex;flex-wrap:wrap;gap:1.2em}figure{margin:0}
-figcaption{font-size:.9em;color:#555;max-width:560px}img{max-width:100%;background:#000}code{background:#f2f2f2;padding:.1em .3em}
+td{white-space:nowrap}td:nth-child(-n+2),th:nth-child(-n+2){text-align:left}.side{display:flex;flex-wrap:wrap;gap:1.2em}figure{margin:0}
+figcaption{font-size:.9em;color:#555;max-width:560px}img+figcaption{max-width:272px}img{max-width:100%;background:#000}code{background:#f2f2f2;padding:.1em .3em}
 </style>)";
 
 std::string colourOf(Model model) {  // Okabe & Ito's palette, safe for the colour-blind
