@@ -158,6 +158,10 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
     if (pictures.empty() && !options.no_pictures && !interrupted())
       pictures = picturesIfPossible(options, run, scene, stand);
   }
+  if (validations.empty()) {
+    fmt::print(stderr, "sunfleck: ended before there was anything to report\n");
+    return 1;
+  }
   const fs::path folder(options.folder);
   const std::string json = reportJson(validations, version(), commit());
   writeWhole(folder / "report.json", json);

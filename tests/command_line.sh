@@ -136,5 +136,13 @@ printf 'g,omega,thickness,mu0\n0,1,inf,1\n0.5,0.9,10,0.5\n' >cases.csv
 does "g,omega,thickness,mu0,reflectance,transmittance,direct" slab --batch cases.csv
 does "0,1,inf,1,1," slab --batch cases.csv
 
+# Ctrl-C at any moment ends the program in an orderly way: done before it came (0), ended early (1), or not yet listening
+# (130); never by a crash.
+for delay in 0.1 0.3 0.6 1 2; do
+  timeout --preserve-status -s INT $delay "$program" validate maple --no-pictures -o interrupted >/dev/null 2>stderr.txt
+  status=$?
+  case $status in 0 | 1 | 130) ;; *) fail "validate, interrupted after $delay s: status $status: $(head -c 400 stderr.txt)" ;; esac
+done
+
 [ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }
 echo "all as it should be"
