@@ -1,0 +1,1 @@
+#include "pp_solver/leaf_angles.hpp"

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pp_solver/problem.hpp"
+
+namespace sunfleck::pp {
+
+struct Settings {
+  int streams = 16;  // N, directions over both hemispheres; even, 2 .. 256
+  // Moments that N directions cannot carry: cut and counted as unscattered (delta-M, Wiscombe 1977) or spread where
+  // they belong to a backward peak. Off: the series is cut at N.
+  bool delta_m = true;
+  // Radiance from the source function with the whole phase function for the first scattering (and the second near the
+  // forward direction), instead of N moments.
+  bool corrections = true;
+  // The azimuth series ends when a mode adds less than this share of the radiance so far, twice in turn.
+  double azimuth_tolerance = 1e-13;
+};
+
+// Light through horizontal planes at one depth.
+struct Fluxes {
+  double up = 0.;              // diffuse [flux]
+  double down = 0.;            // diffuse, without the direct beam [flux]
+  double direct = 0.;          // the beam's own, unscattered [flux]
+  double mean_intensity = 0.;  // radiance averaged over the sphere, direct beam included [radiance]
+};
+
+// The exact solution by discrete ordinates. An object keeps its memory from one problem to the next: solving another of
+// the same size allocates nothing. Objects do not share anything that changes: one for each thread.
+class Solver {
+ public:
+  explicit Solver(Settings settings = {});  // throws InvalidInput
+  ~Solver();
+  Solver(Solver&&) noexcept;
+  Solver& operator=(Solver&&) noexcept;
+
+  // Solves the azimuth mean: all that fluxes need. Throws InvalidInput for a problem that is none (requireSolvable).
+  void solve(const Problem& problem);
+
+  // What follows speaks of the problem solved last.
+  double incident() const;       // flux that arrives at the top, and from below [flux]
+  double reflectance() const;    // flux up at the top over `incident` [1]
+  double transmittance() const;  // flux down at the bottom, direct beam included, over `incident` [1]; 0 if infinite
+  double direct() const;         // the beam's share of transmittance [1]
+  double absorptance() const;    // absorbed by the layers over `incident`, integrated from the mean intensity [1]
+
+  Fluxes fluxes(double depth) const;                   // depth in [0, total thickness]
+  double absorbed(double depth0, double depth1) const;  // flux absorbed between two depths [flux]
+
+  // Radiance of diffuse light (the direct beam left out) at every depth, in every direction:
+  // result[(d * mus.size() + i) * phis.size() + j]. Solves as many azimuth modes as needed.
+  //   mus   cos to the downward vertical [1], [-1, 1], not 0
+  //   phis  azimuth of travel [rad]
+  void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
+                 std::span<double> result);
+  double radiance(double depth, double mu, double phi);
+  int azimuthModes() const;  // how many the last radiances() took
+
+  // The largest deviation, over nodes, depths and the azimuth modes 0 .. modes - 1, of mu dI/dz from the right side of
+  // the transfer equation, over the largest radiance: the solution put back into its equation, by derivatives that are
+  // not those of the solution's own formulas.
+  double residual(int modes = 1);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace sunfleck::pp
