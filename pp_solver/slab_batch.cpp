@@ -1,0 +1,1 @@
+#include "pp_solver/slab_batch.hpp"
