@@ -117,9 +117,12 @@ double PhaseFunction::operator()(double cosine) const {
   return (1. - g * g) / (kSphere * base * std::sqrt(base));
 }
 
-double PhaseFunction::moment(int order) const {
-  if (!moments_.empty()) return order < static_cast<int>(moments_.size()) ? moments_[order] : 0.;
-  return order == 0 ? 1. : std::pow(asymmetry_, order);
+void PhaseFunction::moments(std::span<double> moments) const {
+  double power = 1.;
+  for (size_t l = 0; l < moments.size(); ++l) {
+    moments[l] = moments_.empty() ? power : l < moments_.size() ? moments_[l] : 0.;
+    power *= asymmetry_;
+  }
 }
 
 int PhaseFunction::orders() const {

@@ -31,17 +31,23 @@ inline Vec oddShape(Vec k, Vec z, Vec y, Vec ez, Vec ey, Vec through) {
 struct Shape {
   Vec thick;  // 1 or 0
   Vec p, q;   // thick: u = p e^-kz + q e^-ky, v = k (p e^-kz - q e^-ky)
-  Vec c, d;   // thin: u = c even + d odd, v = -c k^2 odd - d even
+  Vec c, d;   // thin: u = c even + d odd, v = -c k^2 odd - flow even; flow = d but for rounding
+  Vec flow;
 };
 inline Shape shapeOf(const LayerRows& layer, int j) {
   const Vec through = rows(layer.through)[j], u0 = rows(layer.u_top)[j], uw = rows(layer.u_bottom)[j];
   const auto thick = through < 0.36787944117144233;
   const Vec gap = select(thick, Vec(1. - through * through), Vec(Vec{} + 1.));
+  const Vec flow = -0.5 * (rows(layer.v_top)[j] + rows(layer.v_bottom)[j]);
+  // What is odd follows from u where the layer is deep and from v where it is shallow.
+  const Vec s = layer.infinite ? Vec{} : rows(layer.s)[j];
+  const auto deep = s > 1.;
   return {.thick = select(thick, Vec(Vec{} + 1.), Vec{}),
           .p = select(thick, Vec((u0 - uw * through) / gap), Vec{}),
           .q = select(thick, Vec((uw - u0 * through) / gap), Vec{}),
           .c = 0.5 * (u0 + uw),
-          .d = -0.5 * (rows(layer.v_top)[j] + rows(layer.v_bottom)[j])};
+          .d = select(deep, Vec(0.5 * (uw - u0) / select(deep, s, Vec(Vec{} + 1.))), flow),
+          .flow = flow};
 }
 
 // u and v of every mode at depth z below the layer's top, as rows.
@@ -62,7 +68,7 @@ void fieldAt(const BasisRows& basis, const LayerRows& layer, const double* depth
     const auto thick = shape.thick > 0.5;
     rows(u_row)[j] = select(thick, Vec(shape.p * ez + shape.q * ey), Vec(shape.c * even + shape.d * odd)) + gd;
     rows(v_row)[j] = select(thick, Vec(k * (shape.p * ez - shape.q * ey)),
-                            Vec(-shape.c * rows(layer.k2)[j] * odd - shape.d * even)) +
+                            Vec(-shape.c * rows(layer.k2)[j] * odd - shape.flow * even)) +
                      (rows(layer.a)[j] - rows(layer.g)[j]) * beam + gd * k;
   }
 }
@@ -101,7 +107,7 @@ void viewLayer(const BasisRows& basis, const LayerRows& layer, const View& view,
       const Vec odd = layer.infinite ? Vec{} : oddShape(k, z, y, ez, ey, through);
       const Vec s = layer.infinite ? Vec{} : rows(layer.s)[j];
       const Vec even_share = al * shape.c, odd_share = al * shape.d;
-      const Vec v_odd = be * shape.c * k2, v_even = be * shape.d;
+      const Vec v_odd = be * shape.c * k2, v_even = be * shape.flow;
       const Vec thin_down = density * ((even_share - v_even) - (odd_share - v_odd) / m) * (near_down + far_down) +
                             (odd_share - v_odd) * (odd + s * mz);
       const Vec thin_up = density * ((even_share + v_even) + (odd_share + v_odd) / m) * (near_up + far_up) +

@@ -7,8 +7,7 @@
 
 namespace sunfleck::pp::detail {
 
-// (P9) A layer as N directions can carry it (delta-M, Wiscombe 1977): the share f of the scattering that goes nearly
-// straight on counts as not scattered. Of a backward peak too sharp for N moments, the unresolved part is spread.
+// A layer as N directions can carry it (scaled_moments.hpp).
 struct ScaledLayer {
   bool leaves = false;
   double scale = 1.;      // scaled over true depth, 1 - omega f [1]
@@ -19,7 +18,7 @@ struct ScaledLayer {
   double albedo = 0.;    // true omega [1]
   double projection = 1.;  // G of the beam's direction; 1 for particles
   std::vector<double> scatter;       // scaled omega chi_l, l < N
-  std::vector<double> true_scatter;  // omega chi_l of the true phase function, l < N
+  std::vector<double> true_scatter;  // omega chi_l of the true phase function, l <= N
 };
 
 // Makes `scaled` from `layer`; keeps its memory.
