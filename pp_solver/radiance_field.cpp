@@ -55,6 +55,8 @@ class Tracer {
         levels_[p].z.push_back(s_.layers[p].thickness);
         levels_[p].output.push_back(-1);
       }
+    for (std::size_t p = 0; p < s_.layers.size(); ++p)
+      if (s_.layers[p].leaves) s_.tables[p]->setViews(cosines_);
     std::fill(result.begin(), result.end(), 0.);
   }
 
@@ -62,10 +64,12 @@ class Tracer {
   void addWhole();  // what needs no azimuth series: sky seen directly, first scattering
 
  private:
-  bool corrected(std::size_t p) const { return s_.settings.corrections && !s_.layers[p].leaves; }
+  // Extinction per scaled depth along the view, over |mu|: with corrections that of the true medium.
   double viewRate(std::size_t p, double mu) const {
-    return corrected(p) ? 1. / (mu * s_.layers[p].scale) : s_.projectionOf(p, mu) / mu;
+    if (s_.layers[p].leaves) return s_.projectionOf(p, mu) / mu;
+    return 1. / (mu * (s_.settings.corrections ? s_.layers[p].scale : 1.));
   }
+  double phaseInto(std::size_t p, double mu, double azimuth) const;
   void addBundle(const BasisRows& rows, bool sine, std::vector<double>& added);
   void followDirection(const BasisRows& rows, StackRows& stack, double mu, bool sine, double* down, double* up);
   void viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t p, double mu, bool sine, double* down, double* up);
@@ -111,7 +115,7 @@ void Tracer::viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t
   } else {
     double *scatter = memory_.take(static_cast<std::size_t>(streams) * lanes), *cosine = memory_.take(lanes),
            *first = memory_.take(lanes);
-    const std::vector<double>& moments = corrected(p) ? layer.true_scatter : layer.scatter;
+    const std::vector<double>& moments = s_.settings.corrections ? layer.true_scatter : layer.scatter;
     for (int lane = 0; lane < lanes; ++lane) {
       const int mode = static_cast<int>(rows.mode[lane]);
       for (int j = 0; mode + j < streams; ++j) scatter[j * lanes + lane] = moments[mode + j];
@@ -127,7 +131,7 @@ void Tracer::viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t
     down[i] *= share;
     up[i] *= share;
   }
-  if (corrected(p) || sine || s_.beam == 0.) return;
+  if (s_.settings.corrections || sine || s_.beam == 0.) return;
   for (int lane = 0; lane < lanes; ++lane) {
     double same, opposite;  // source of the beam's first scattering into mu, downward and upward
     s_.beamSource(rows, lane, p, mu, same, opposite);
@@ -218,9 +222,18 @@ void Tracer::addModes(bool sine) {
   }
 }
 
+// Share of the beam's light, per depth along the view, that one scattering turns into it [1/sr].
+double Tracer::phaseInto(std::size_t p, double mu, double azimuth) const {
+  if (const auto* leaves = std::get_if<LeafScattering>(&s_.problem.layers[p].medium))
+    return leafScattering(*leaves, mu, s_.mu0, azimuth) / s_.projectionOf(p, std::abs(mu));
+  const double sines = std::sqrt((1. - s_.mu0) * (1. + s_.mu0) * (1. - mu) * (1. + mu));
+  const double cosine = std::clamp(sines * std::cos(azimuth) + s_.mu0 * mu, -1., 1.);
+  const auto& particles = std::get<Particles>(s_.problem.layers[p].medium);
+  return particles.albedo * particles.phase(cosine);
+}
+
 void Tracer::addWhole() {
   const double phi0 = s_.problem.beam ? s_.problem.beam->azimuth : 0.;
-  const double sine0 = std::sqrt((1. - s_.mu0) * (1. + s_.mu0));
   const auto skyAlong = [](const Sky& sky, double mu, double phi) {
     if (const double* radiance = std::get_if<double>(&sky)) return *radiance;
     const auto& function = std::get<1>(sky);
@@ -230,7 +243,6 @@ void Tracer::addWhole() {
     for (std::size_t j = 0; j < phis_.size(); ++j) {
       const bool downward = mus_[i] > 0.;
       const double mu = std::abs(mus_[i]);
-      const double angle = sine0 * std::sqrt((1. - mu) * (1. + mu)) * std::cos(phis_[j] - phi0) + s_.mu0 * mus_[i];
       const auto result = [&](int output) -> double& {
         return result_[(static_cast<std::size_t>(output) * mus_.size() + i) * phis_.size() + j];
       };
@@ -241,9 +253,8 @@ void Tracer::addWhole() {
         const ScaledLayer& layer = s_.layers[p];
         const double m = viewRate(p, mu), w = layer.thickness, rate = layer.projection / s_.mu0;
         double source = 0.;
-        if (corrected(p) && s_.beam > 0.)
-          source = s_.beam * s_.scaledBeam(p) * layer.albedo *
-                   std::get<Particles>(s_.problem.layers[p].medium).phase(std::clamp(angle, -1., 1.));
+        if (s_.settings.corrections && s_.beam > 0.)
+          source = s_.beam * s_.scaledBeam(p) * phaseInto(p, mus_[i], phis_[j] - phi0);
         const double entering = carried;
         const auto at = [&](double z) {
           if (downward) return entering * std::exp(-m * z) + source * onceDown(rate, m, z);

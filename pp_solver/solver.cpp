@@ -65,7 +65,8 @@ void Solver::solve(const Problem& problem) {
   s.any_leaves = false;
   s.depth = 0.;
   for (std::size_t p = 0; p < s.layers.size(); ++p) {
-    scaleLayer(problem.layers[p], s.settings.streams, s.settings.delta_m, s.mu0, s.layers[p]);
+    scaleLayer(problem.layers[p], s.settings.streams, s.settings.delta_m, s.layers[p]);
+    if (s.layers[p].leaves) s.prepareLeaves(p);
     s.layers[p].top = s.depth;
     s.depth += s.layers[p].true_thickness;
     s.any_leaves |= s.layers[p].leaves;
@@ -74,7 +75,7 @@ void Solver::solve(const Problem& problem) {
   for (std::size_t p = 0; p < s.layers.size(); ++p) {
     LayerRows& row = s.stack.layer[p];
     if (row.given_modes) continue;
-    for (int j = 0; j < s.n; ++j) row.x_mean[j] = row.x[j * s.basis.row];
+    for (int j = 0; j < s.n; ++j) row.x_mean[j] = row.x_absorb[j] = row.x[j * s.basis.row];
   }
   s.solved = true;
 }
@@ -122,7 +123,7 @@ double Solver::absorptance() const {
     double sum = 0.;
     for (int j = 0; j < s.n; ++j) {
       const double ends = row.infinite ? row.u_top[j] / row.k[j] : row.s[j] * (row.u_top[j] + row.u_bottom[j]);
-      sum += row.x_mean[j] * (ends + row.g[j] * integralOfDifference(row.k[j], rate, w));
+      sum += row.x_absorb[j] * (ends + row.g[j] * integralOfDifference(row.k[j], rate, w));
     }
     const double beam = s.beam * s.scaledBeam(p) * layer.projection * (row.infinite ? 1. / rate : w * relax(rate * w));
     absorbed += layer.loss * (2. * kPi * sum + beam);

@@ -3,7 +3,7 @@
 #include "pp_solver/detail/scaled_moments.hpp"
 
 namespace sunfleck::pp::detail {
-void scaleLayer(const Layer& layer, int streams, bool delta_m, double mu0, ScaledLayer& scaled) {
+void scaleLayer(const Layer& layer, int streams, bool delta_m, ScaledLayer& scaled) {
   scaled.true_thickness = layer.thickness;
   scaled.scatter.assign(streams, 0.);
   scaled.true_scatter.resize(streams + 1);
@@ -13,7 +13,6 @@ void scaleLayer(const Layer& layer, int streams, bool delta_m, double mu0, Scale
     scaled.albedo = leaves->reflectance + leaves->transmittance;
     scaled.loss = 1. - scaled.albedo;
     scaled.thickness = layer.thickness;
-    scaled.projection = leafProjection(leaves->angles, mu0);
     return;
   }
   const auto& particles = std::get<Particles>(layer.medium);

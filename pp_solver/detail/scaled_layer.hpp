@@ -22,6 +22,6 @@ struct ScaledLayer {
 };
 
 // Makes `scaled` from `layer`; keeps its memory.
-void scaleLayer(const Layer& layer, int streams, bool delta_m, double mu0, ScaledLayer& scaled);
+void scaleLayer(const Layer& layer, int streams, bool delta_m, ScaledLayer& scaled);
 
 }  // namespace sunfleck::pp::detail

@@ -102,7 +102,7 @@ void shape(StackRows& stack, const BasisRows& basis, int layers) {
       *p = take(lanes);
     for (double** p : {&layer.x, &layer.y, &layer.x_hat, &layer.y_hat, &layer.factor}) *p = take(square);
     for (double** p : {&layer.even_source, &layer.odd_source, &layer.k, &layer.k2, &layer.x_flux, &layer.y_flux,
-                       &layer.x_mean, &layer.a, &layer.g, &layer.s, &layer.t, &layer.through, &layer.u_top,
+                       &layer.x_mean, &layer.x_absorb, &layer.a, &layer.g, &layer.s, &layer.t, &layer.through, &layer.u_top,
                        &layer.u_bottom, &layer.v_top, &layer.v_bottom, &layer.factor_inverse, &layer.remainder})
       *p = take(row);
   }

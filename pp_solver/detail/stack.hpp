@@ -59,7 +59,8 @@ struct LayerRows {
   double *k, *k2;        // rows over j
   double *x, *y;         // n rows over the basis
   double *x_hat, *y_hat;  // n rows over the nodes
-  double *x_flux, *y_flux, *x_mean;  // rows over j: flat . x_hat, flat . y_hat, weight . S
+  double *x_flux, *y_flux;   // rows over j: flat . x_hat, flat . y_hat
+  double *x_mean, *x_absorb;  // rows over j: sum of w S; of w G S
   // Particular solution of the beam: u = g D(k, kappa, z), v = (a - g) e^-kappa z + g k D
   double *a, *g;
   double *s, *t, *through;  // tanh(k w / 2) / k, k tanh(k w / 2), e^-kw: rows over j

@@ -103,6 +103,20 @@ void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t
             ? -(given.emission_bottom - given.emission_top) / (layer.thickness * row.loss[1 * lanes + lane])
             : 0.;
   }
+  if (layer.leaves) {
+    detail::LeafTables& table = *tables[index];
+    const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
+    const int m = static_cast<int>(rows.mode[0]);
+    std::vector<double> even(n), odd(n);
+    table.fromBeam(m).evenOdd(leaves.reflectance, leaves.transmittance, even, odd);
+    const double share = amplitude * (m == 0 ? 1. : 2.) / (2. * kPi);
+    for (int i = 0; i < n; ++i) {
+      row.even_source[i] = share * std::sqrt(ordinates->weight()[i]) * even[i];
+      row.odd_source[i] = share * std::sqrt(ordinates->weight()[i]) * odd[i];
+    }
+    leafModes(rows, row, table, leaves, ordinates->weight());
+    return;
+  }
   path.scatterRows(rows, row.scatter, mu, first, row.even_source, row.odd_source);
   path.layerModes(rows, row, scratch);
 }
@@ -164,13 +178,37 @@ void Solver::State::fillGround(const BasisRows& rows, StackRows& stack_rows, boo
 
 double Solver::State::projectionOf(std::size_t index, double mu) const {
   if (!layers[index].leaves) return 1.;
-  return leafProjection(std::get<LeafScattering>(problem.layers[index].medium).angles, mu);
+  return tables[index]->viewProjection(mu);
+}
+
+void Solver::State::prepareLeaves(std::size_t index) {
+  const LeafAngles& angles = std::get<LeafScattering>(problem.layers[index].medium).angles;
+  tables.resize(layers.size());
+  auto found = std::find_if(leaf_tables.begin(), leaf_tables.end(),
+                            [&](const auto& table) { return table->angles() == angles; });
+  if (found == leaf_tables.end())
+    found = leaf_tables.insert(
+        found, std::make_unique<detail::LeafTables>(angles, ordinates->mu(), ordinates->weight()));
+  tables[index] = found->get();
+  tables[index]->setBeam(mu0);
+  layers[index].projection = tables[index]->beamProjection();
 }
 
 void Solver::State::beamSource(const BasisRows& rows, int lane, std::size_t index, double mu, double& down,
                                double& up) const {
   const int m = static_cast<int>(rows.mode[lane]), streams = settings.streams, lanes = rows.lanes;
   const double amplitude = beam * scaledBeam(index) * (m == 0 ? 1. : 2.) / (4. * kPi);
+  if (layers[index].leaves) {
+    const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
+    const LeafKernel& scattering = tables[index]->beamIntoViews(m);
+    std::vector<double> even(scattering.modulus.size()), odd(scattering.modulus.size());
+    scattering.evenOdd(leaves.reflectance, leaves.transmittance, even, odd);
+    const std::size_t i = tables[index]->viewAt(mu);
+    const double share = amplitude / tables[index]->viewProjection(mu);
+    down = share * (even[i] + odd[i]);
+    up = share * (even[i] - odd[i]);
+    return;
+  }
   double now = legendreStart(rows, lane, mu), before = 0., now0 = legendreStart(rows, lane, mu0), before0 = 0.;
   down = up = 0.;
   for (int j = 0; m + j < streams; ++j) {
@@ -224,6 +262,19 @@ void Solver::State::solveBundle(const BasisRows& rows, StackRows& stack_rows, bo
   pathOf(rows).solve(rows, stack_rows);
 }
 
-double Solver::State::leafView(const BasisRows&, std::size_t, double, double*, double*) const { return 1.; }
+double Solver::State::leafView(const BasisRows& rows, std::size_t index, double mu, double* even,
+                               double* odd) const {
+  const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
+  const LeafKernel& scattering = tables[index]->intoViews(static_cast<int>(rows.mode[0]));
+  std::vector<double> all_even(scattering.modulus.size()), all_odd(scattering.modulus.size());
+  scattering.evenOdd(leaves.reflectance, leaves.transmittance, all_even, all_odd);
+  const std::size_t first = tables[index]->viewAt(mu) * n;
+  for (int i = 0; i < n; ++i) {
+    const double root = std::sqrt(ordinates->weight()[i]);
+    even[i] = root * all_even[first + i];
+    odd[i] = root * all_odd[first + i];
+  }
+  return 1. / tables[index]->viewProjection(mu);
+}
 
 }  // namespace sunfleck::pp

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pp_solver/detail/kernel.hpp"
+#include "pp_solver/detail/leaf_layer.hpp"
 #include "pp_solver/detail/scaled_layer.hpp"
 #include "pp_solver/solver.hpp"
 
@@ -29,6 +30,9 @@ struct Solver::State {
   detail::RowMemory memory;
   double *u_row, *v_row;  // for fluxes at a depth
 
+  std::vector<std::unique_ptr<detail::LeafTables>> leaf_tables;  // of each distribution so far
+  std::vector<detail::LeafTables*> tables;                       // of each layer, or null
+
   std::map<int, std::unique_ptr<detail::BasisRows>> bundles;  // by first mode
   detail::StackRows bundle_stack;
 
@@ -51,6 +55,9 @@ struct Solver::State {
   double trueBeam(double depth_below_top) const;
 
   std::size_t layerAt(double depth_below_top) const;
+
+  // Finds or makes the tables of a layer of leaves, and G of the beam.
+  void prepareLeaves(std::size_t index);
 
   // Extinction per scaled depth of light along mu, times mu: 1 for particles, G(mu) for leaves.
   double projectionOf(std::size_t index, double mu) const;
