@@ -40,9 +40,9 @@ struct SlabTraceResult {
   double seconds = 0., cpu_seconds = 0.;     // wall time, and of all threads of the process
 };
 
-// (R8) Monte Carlo of a slab. A path of a million scatterings is absorbed where it is: only without absorption and far
-// inside a slab thicker than some hundreds is that ever seen, as 1e-3 of the light at most. When `progress` ends it
-// early, the batches done until then are the result, at least one.
+// (R8) Monte Carlo of a slab. A path of a million scatterings is absorbed where it is: only without absorption and in a
+// slab thicker than some hundreds is that ever seen, as 2e-3 of the light at most (infinite thickness), and paths are
+// slow there. When `progress` ends it early, the batches done until then are the result, at least one.
 // Throws InvalidInput on a slab, a measure or an effort out of its range.
 SlabTraceResult traceSlab(const TracedSlab& slab, const SlabMeasures& measures, const TraceEffort& effort,
                           const Progress& progress = {});
