@@ -42,6 +42,11 @@ void requireSolvable(const Problem& problem) {
               leaves.reflectance + leaves.transmittance, "at most 1");
       require(std::isfinite(leaves.hot_spot) && leaves.hot_spot >= 0., where + "hot_spot", leaves.hot_spot,
               "finite and no less than 0");
+      const bool alone = problem.layers.size() == 1 && !infinite && std::holds_alternative<double>(problem.above) &&
+                         std::get<double>(problem.above) == 0. && std::holds_alternative<double>(problem.below) &&
+                         std::get<double>(problem.below) == 0. && !problem.ground.brdf;
+      require(leaves.hot_spot == 0. || alone, where + "hot_spot", leaves.hot_spot,
+              "0 but in a single finite layer lit by the beam alone, on a Lambertian ground");
       require(layer.emission_top == layer.emission_bottom, where + "emission_bottom", layer.emission_bottom,
               "emission_top in a layer of leaves");
     }

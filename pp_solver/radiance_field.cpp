@@ -4,6 +4,7 @@
 
 #include "core/require.hpp"
 #include "pp_solver/detail/state.hpp"
+#include "pp_solver/hot_spot.hpp"
 
 namespace sunfleck::pp {
 namespace {
@@ -61,7 +62,8 @@ class Tracer {
   }
 
   void addModes(bool sine);
-  void addWhole();  // what needs no azimuth series: sky seen directly, first scattering
+  void addWhole();    // what needs no azimuth series: sky seen directly, first scattering
+  void addHotSpot();  // at the top, upward
 
  private:
   // Extinction per scaled depth along the view, over |mu|: with corrections that of the true medium.
@@ -267,6 +269,25 @@ void Tracer::addWhole() {
     }
 }
 
+// (P22), and what (P11) takes from the light of higher orders, from each direction alike.
+void Tracer::addHotSpot() {
+  const auto& leaves = std::get<LeafScattering>(s_.problem.layers[0].medium);
+  const double w = s_.layers[0].thickness, phi0 = s_.problem.beam->azimuth, albedo = s_.problem.ground.albedo;
+  for (std::size_t i = 0; i < mus_.size(); ++i)
+    for (std::size_t j = 0; j < phis_.size(); ++j) {
+      if (mus_[i] > 0.) continue;
+      const SunAndView at{.thickness = w, .mu0 = s_.mu0, .mu = -mus_[i], .azimuth = phis_[j] - phi0};
+      const ScatteredOnce once = scatteredOnceTurbid(leaves, at), excess = hotSpotExcess(leaves, at);
+      const double ground = albedo / kPi * s_.mu0;
+      for (std::size_t d = 0; d < depths_.size(); ++d) {
+        if (depths_[d] > 0.) continue;
+        double& value = result_[(d * mus_.size() + i) * phis_.size() + j];
+        const double first = s_.beam * (once.leaves + ground * once.gap);
+        value = first + s_.beam * (excess.leaves + ground * excess.gap) + s_.hot_spot.again * (value - first);
+      }
+    }
+}
+
 }  // namespace
 
 void Solver::radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
@@ -286,6 +307,7 @@ void Solver::radiances(std::span<const double> depths, std::span<const double> m
       std::holds_alternative<std::function<double(double, double)>>(s.problem.below))
     tracer.addModes(true);
   tracer.addWhole();
+  if (s.hasHotSpot()) tracer.addHotSpot();
 }
 
 }  // namespace sunfleck::pp

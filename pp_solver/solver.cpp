@@ -77,6 +77,7 @@ void Solver::solve(const Problem& problem) {
     if (row.given_modes) continue;
     for (int j = 0; j < s.n; ++j) row.x_mean[j] = row.x_absorb[j] = row.x[j * s.basis.row];
   }
+  s.findHotSpot();
   s.solved = true;
 }
 
@@ -95,7 +96,7 @@ double Solver::reflectance() const {
   const State& s = *state_;
   double up = 0.;
   for (int i = 0; i < s.n; ++i) up += s.basis.flat[i] * (s.stack.s_top[i] - s.stack.d_top[i]);
-  return kPi * up / incident();
+  return kPi * up / incident() + s.hot_spot.reflected;
 }
 
 double Solver::transmittance() const {
@@ -104,7 +105,7 @@ double Solver::transmittance() const {
   double down = 0.;
   for (int i = 0; i < s.n; ++i) down += s.basis.flat[i] * (s.stack.s_bottom[i] + s.stack.d_bottom[i]);
   const double beam = s.beam * s.mu0 * s.scaledBeam(s.layers.size() - 1, s.layers.back().true_thickness);
-  return (kPi * down + beam) / incident();
+  return (kPi * down + beam) / incident() + s.hot_spot.transmitted;
 }
 
 double Solver::direct() const {
@@ -130,7 +131,7 @@ double Solver::absorptance() const {
     if (row.planck_top[0] != 0. || row.planck_bottom[0] != 0.)
       absorbed += layer.loss * 4. * kPi * 0.5 * (row.planck_top[0] + row.planck_bottom[0]) * w;
   }
-  return absorbed / incident();
+  return absorbed / incident() + s.hot_spot.absorbed;
 }
 
 Fluxes Solver::fluxes(double depth) const {

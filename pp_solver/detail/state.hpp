@@ -25,6 +25,14 @@ struct Solver::State {
   double mu0 = 1., beam = 0.;  // irradiance normal to the beam
   int modes_used = 0;
 
+  // What the hot spot changes in the fluxes, over the flux that arrives (P11).
+  struct HotSpot {
+    double reflected = 0., transmitted = 0., absorbed = 0.;
+    double again = 1.;  // factor on the reflected light of higher orders
+  } hot_spot;
+  bool hasHotSpot() const;
+  void findHotSpot();
+
   detail::BasisRows basis;  // of mode 0 alone
   detail::StackRows stack;
   detail::RowMemory memory;
