@@ -65,7 +65,6 @@ void solve(const BasisRows& basis, const KernelPath& path, Worker& worker, std::
     fill(basis, stack, lane, slab, delta_m, worker.moments, mu, first);
   }
   path.scatterRows(basis, layer.scatter, mu, first, layer.even_source, layer.odd_source);
-  path.layerModes(basis, layer, stack.scratch);
   path.solve(basis, stack);
   for (std::size_t lane = 0; lane < cases.size(); ++lane) {
     const SlabCase& slab = cases[lane];

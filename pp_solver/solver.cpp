@@ -64,10 +64,13 @@ void Solver::solve(const Problem& problem) {
   s.layers.resize(problem.layers.size());
   s.any_leaves = false;
   s.depth = 0.;
+  double path = 0.;
   for (std::size_t p = 0; p < s.layers.size(); ++p) {
     scaleLayer(problem.layers[p], s.settings.streams, s.settings.delta_m, s.layers[p]);
     if (s.layers[p].leaves) s.prepareLeaves(p);
     s.layers[p].top = s.depth;
+    s.layers[p].beam_path = path;
+    path += s.layers[p].projection * s.layers[p].thickness;
     s.depth += s.layers[p].true_thickness;
     s.any_leaves |= s.layers[p].leaves;
   }

@@ -184,17 +184,20 @@ inline void downLayer(const BasisRows& basis, const StackRows& stack, LayerRows&
   project<S>(numbers<S>(rows(layer.v_bottom)), x, d_hat, n, width);
 }
 
-template <typename S>
-inline void layerStack(const BasisRows& basis, StackRows& stack) {
+// `prepare` makes a layer's modes: just before they are used, so that they are still in the cache.
+template <typename S, typename Prepare>
+inline void layerStack(const BasisRows& basis, StackRows& stack, Prepare prepare) {
   const int n = basis.n, width = rowWidth<S>(n), square = n * width, count = stack.layers;
   Vec *z = rows(stack.admittance), *offset = rows(stack.offset);
   Vec *z_ground = z + count * square, *offset_ground = offset + count * width;
   for (int i = 0; i < square; ++i) z_ground[i] = stack.black ? Vec{} : rows(stack.ground_matrix)[i];
   for (int k = 0; k < width; ++k) offset_ground[k] = stack.black ? -rows(stack.bottom_in)[k] : rows(stack.ground_row)[k];
   if (stack.black) addIdentity<S>(z_ground, n, width);
-  for (int p = count - 1; p >= 0; --p)
+  for (int p = count - 1; p >= 0; --p) {
+    prepare(stack.layer[p]);
     throughLayer<S>(basis, stack, stack.layer[p], z + (p + 1) * square, offset + (p + 1) * width, z + p * square,
                     offset + p * width);
+  }
 
   // At the top S + D = 2 I+ is given: (1 + Z) S = 2 I+ - z.
   Vec *matrix = rows(stack.scratch), *inverse = matrix + square, *s_hat = rows(stack.s_top);

@@ -15,9 +15,10 @@ template <typename S>
 constexpr int perVec() {
   return kWide<S> ? 1 : kLanes;
 }
+// Of wide rows the number is odd: a power of two would put a column's entries into the same few sets of the cache.
 template <typename S>
 constexpr int rowWidth(int n) {
-  return (n + perVec<S>() - 1) / perVec<S>();
+  return kWide<S> && n > 8 ? n | 1 : (n + perVec<S>() - 1) / perVec<S>();
 }
 
 template <typename S>

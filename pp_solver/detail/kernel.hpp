@@ -19,8 +19,7 @@ struct KernelPath {
   int lanes;
   void (*scatterRows)(const BasisRows&, const double* scatter, const double* mu, const double* first, double* even,
                       double* odd);
-  void (*layerModes)(const BasisRows&, LayerRows&, double* scratch);
-  void (*solve)(const BasisRows&, StackRows&);  // after layerModes of every layer
+  void (*solve)(const BasisRows&, StackRows&);
   void (*fieldAt)(const BasisRows&, const LayerRows&, const double* depth, double* u, double* v);
   void (*viewLayer)(const BasisRows&, const LayerRows&, const View&, double* scratch);
 };

@@ -13,11 +13,6 @@ void scatterRowsOf(const BasisRows& basis, const double* scatter, const double* 
                                    numbers<S>(rows(first))[0], rows(even), rows(odd));
 }
 
-template <typename S>
-void layerModesOf(const BasisRows& basis, LayerRows& layer, double* scratch) {
-  layerModes<S>(basis, layer, rows(scratch));
-}
-
 // Whether the sum and the difference of both ends of the only layer hold what crosses it with nearly all its digits: the
 // light that comes out is no less than a thousandth of what entered, in the slowest mode.
 template <typename S>
@@ -32,21 +27,23 @@ bool seesThrough(const BasisRows& basis, const LayerRows& layer) {
 
 template <typename S>
 void solveOf(const BasisRows& basis, StackRows& stack) {
-  for (int p = 0; p < stack.layers; ++p) {
-    modesAtNodes<S>(basis, stack.layer[p]);
-    layerPassage<S>(basis, stack.layer[p]);
+  const auto prepare = [&](LayerRows& layer) {
+    if (!layer.given_modes) layerModes<S>(basis, layer, rows(stack.scratch));
+    modesAtNodes<S>(basis, layer);
+    layerPassage<S>(basis, layer);
+  };
+  if (stack.layers == 1 && stack.black && !stack.layer[0].infinite) {
+    prepare(stack.layer[0]);
+    if (seesThrough<S>(basis, stack.layer[0])) return oneLayer<S>(basis, stack);
+    return layerStack<S>(basis, stack, [](LayerRows&) {});
   }
-  if (stack.layers == 1 && stack.black && !stack.layer[0].infinite && seesThrough<S>(basis, stack.layer[0]))
-    oneLayer<S>(basis, stack);
-  else
-    layerStack<S>(basis, stack);
+  layerStack<S>(basis, stack, prepare);
 }
 
 template <typename S>
 constexpr detail::KernelPath path() {
   return {.lanes = kWide<S> ? kLanes : 1,
           .scatterRows = scatterRowsOf<S>,
-          .layerModes = layerModesOf<S>,
           .solve = solveOf<S>,
           .fieldAt = fieldAt<S>,
           .viewLayer = viewLayer<S>};

@@ -13,6 +13,7 @@ struct ScaledLayer {
   double scale = 1.;      // scaled over true depth, 1 - omega f [1]
   double thickness = 0.;  // scaled [1]
   double top = 0.;        // true depth of the layer's top
+  double beam_path = 0.;  // scaled extinction above the layer, for a vertical path of the beam
   double true_thickness = 0.;
   double loss = 1.;      // 1 - scaled omega, exact near 0 [1]
   double albedo = 0.;    // true omega [1]

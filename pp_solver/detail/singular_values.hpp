@@ -17,18 +17,26 @@ struct Rotation {
   }
 };
 
+template <typename S, int kColumns>
+inline void rotateColumns(Vec* rows, int width, int first, int last, const S* cosine, const S* sine) {
+  Vec carried[kColumns];
+  for (int c = 0; c < kColumns; ++c) carried[c] = rows[first * width + c];
+  for (int i = first; i < last; ++i)
+    for (int c = 0; c < kColumns; ++c) {
+      const Vec next = rows[(i + 1) * width + c];
+      rows[i * width + c] = cosine[i] * carried[c] + sine[i] * next;
+      carried[c] = cosine[i] * next - sine[i] * carried[c];
+    }
+  for (int c = 0; c < kColumns; ++c) rows[last * width + c] = carried[c];
+}
+
 // Turns rows first .. last of `rows` (each of `width` Vec) by the rotations between neighbours, in this order.
 template <typename S>
 inline void rotateRows(Vec* rows, int width, int first, int last, const S* cosine, const S* sine) {
-  for (int column = 0; column < width; ++column) {
-    Vec carried = rows[first * width + column];
-    for (int i = first; i < last; ++i) {
-      const Vec next = rows[(i + 1) * width + column];
-      rows[i * width + column] = cosine[i] * carried + sine[i] * next;
-      carried = cosine[i] * next - sine[i] * carried;
-    }
-    rows[last * width + column] = carried;
-  }
+  int column = 0;
+  for (; column + 4 <= width; column += 4) rotateColumns<S, 4>(rows + column, width, first, last, cosine, sine);
+  for (; column + 2 <= width; column += 2) rotateColumns<S, 2>(rows + column, width, first, last, cosine, sine);
+  for (; column < width; ++column) rotateColumns<S, 1>(rows + column, width, first, last, cosine, sine);
 }
 
 // (P3) Singular values of an upper bidiagonal matrix by implicit QR steps (Golub & Kahan 1965, Demmel & Kahan 1990):
@@ -57,12 +65,14 @@ void singularValues(int n, S* d, S* e, Vec* left, int width, S* cosine, S* sine)
       const S shift = maximum(S(t22 - t12 * t12 / select(divisor == 0., S(S{} + 1.), divisor)), S{});
 
       S f{}, g{};
-      for (int i = 0; i < last; ++i) {
+      int first = 0;
+      if constexpr (sizeof(S) == sizeof(double)) first = static_cast<int>(start);
+      for (int i = first; i < last; ++i) {
         const auto begins = start == double(i), idle = start > double(i);
         f = select(begins, S(d[i] - shift / d[i]), f);
         g = select(begins, e[i], g);
         const Rotation<S> right(f, g);
-        if (i > 0) e[i - 1] = select(start < double(i), right.r, e[i - 1]);
+        if (i > first) e[i - 1] = select(start < double(i), right.r, e[i - 1]);
         const S f2 = right.c * d[i] + right.s * e[i], e2 = right.c * e[i] - right.s * d[i];
         const S g2 = right.s * d[i + 1], d2 = right.c * d[i + 1];
         const Rotation<S> turn(f2, g2);
@@ -78,7 +88,7 @@ void singularValues(int n, S* d, S* e, Vec* left, int width, S* cosine, S* sine)
           e[i + 1] = select(idle, e[i + 1], S(turn.c * e[i + 1]));
         }
       }
-      rotateRows(left, width, 0, last, cosine, sine);
+      rotateRows(left, width, first, last, cosine, sine);
     }
   }
 }

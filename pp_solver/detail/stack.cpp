@@ -39,7 +39,7 @@ double* RowMemory::take(std::size_t count) {
 BasisRows::BasisRows(const Ordinates& ordinates, int first_mode, bool successive, int vector_lanes, bool wide) {
   n = ordinates.streams() / 2;
   lanes = wide ? vector_lanes : 1;
-  row = wide ? static_cast<std::size_t>(n) * lanes : roundUp(n, vector_lanes);
+  row = wide ? static_cast<std::size_t>(n > 8 ? n | 1 : n) * lanes : roundUp(n, vector_lanes);  // see rowWidth
   const auto count = static_cast<std::size_t>(n);
   alpha = memory.take(count * lanes);
   beta = memory.take(count * lanes);

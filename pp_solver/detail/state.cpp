@@ -54,9 +54,8 @@ double Solver::State::skyMode(const Sky& sky, int m, double mu, bool sine) const
 }
 
 double Solver::State::scaledBeam(std::size_t index, double depth_in_layer) const {
-  double path = layers[index].scale * layers[index].projection * depth_in_layer;
-  for (std::size_t p = 0; p < index; ++p) path += layers[p].projection * layers[p].thickness;
-  return std::exp(-path / mu0);
+  const ScaledLayer& layer = layers[index];
+  return std::exp(-(layer.beam_path + layer.scale * layer.projection * depth_in_layer) / mu0);
 }
 
 double Solver::State::trueBeam(double depth_below_top) const {
@@ -74,7 +73,7 @@ std::size_t Solver::State::layerAt(double depth_below_top) const {
   return index;
 }
 
-void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t index, bool sine, double* scratch) {
+void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t index, bool sine) {
   const ScaledLayer& layer = layers[index];
   const auto& path = pathOf(rows);
   const int lanes = rows.lanes, streams = settings.streams;
@@ -118,7 +117,6 @@ void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t
     return;
   }
   path.scatterRows(rows, row.scatter, mu, first, row.even_source, row.odd_source);
-  path.layerModes(rows, row, scratch);
 }
 
 // The ground and what arrives from outside, as hats: sqrt(w mu) times radiance.
@@ -257,7 +255,7 @@ double Solver::State::groundRadiance(const BasisRows& rows, const StackRows& sta
 
 void Solver::State::solveBundle(const BasisRows& rows, StackRows& stack_rows, bool sine) {
   detail::shape(stack_rows, rows, static_cast<int>(layers.size()));
-  for (std::size_t p = 0; p < layers.size(); ++p) fillLayer(rows, stack_rows.layer[p], p, sine, stack_rows.scratch);
+  for (std::size_t p = 0; p < layers.size(); ++p) fillLayer(rows, stack_rows.layer[p], p, sine);
   fillGround(rows, stack_rows, sine);
   pathOf(rows).solve(rows, stack_rows);
 }

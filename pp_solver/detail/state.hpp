@@ -82,8 +82,7 @@ struct Solver::State {
                         bool sine) const;
 
  private:
-  void fillLayer(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, bool sine,
-                 double* scratch);
+  void fillLayer(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, bool sine);
   void fillGround(const detail::BasisRows& basis_rows, detail::StackRows& rows, bool sine);
 };
 
