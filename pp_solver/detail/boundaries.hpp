@@ -126,7 +126,7 @@ inline void throughLayer(const BasisRows& basis, const StackRows& stack, LayerRo
   for (int k = 0; k < width; ++k) q[k] = Vec{};
   project<S>(numbers<S>(q), weighted, remainder, n, width);
   solveLower<S>(factor, inverse, q, n, width);
-  solveLowerRows<S>(factor, inverse, product, n, width, width);
+  solveLowerRows<S>(factor, inverse, product, n, width, weighted);
   multiply<S>(transposed, numbers<S>(product), product, n, n, width, 1, stride, true);
   mirror<S>(transposed, n, width);
   for (int i = 0; i < square; ++i) z_above[i] += gamma[i] - 2. * transposed[i];

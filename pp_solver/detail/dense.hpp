@@ -133,15 +133,23 @@ inline void solveUpper(const Vec* factor, const S* inverse, Vec* x, int n, int w
   }
 }
 
-// Rows 0 .. n - 1 of `x` (each `across` Vec) become those of U^-T x.
+// Rows 0 .. n - 1 of `x` (each `width` Vec, as those of the factor) become those of U^-T x: four rows at a time, what
+// the rows above them take away as a product.
+//   work  4 rows
 template <typename S>
-inline void solveLowerRows(const Vec* factor, const S* inverse, Vec* x, int n, int width, int across) {
-  for (int j = 0; j < n; ++j) {
-    Vec* row = x + j * across;
-    for (int k = 0; k < across; ++k) row[k] = row[k] * inverse[j];
-    for (int i = j + 1; i < n; ++i) {
-      const S share = numbers<S>(factor + j * width)[i];
-      for (int k = 0; k < across; ++k) x[i * across + k] -= share * row[k];
+inline void solveLowerRows(const Vec* factor, const S* inverse, Vec* x, int n, int width, Vec* work) {
+  const int stride = width * perVec<S>();
+  for (int first = 0; first < n; first += 4) {
+    const int count = n - first < 4 ? n - first : 4;
+    multiply<S>(work, numbers<S>(factor) + first, x, count, first, width, 1, stride);
+    for (int j = 0; j < count; ++j) {
+      Vec* row = x + (first + j) * width;
+      for (int k = 0; k < width; ++k) row[k] -= work[j * width + k];
+      for (int i = 0; i < j; ++i) {
+        const S share = numbers<S>(factor + (first + i) * width)[first + j];
+        for (int k = 0; k < width; ++k) row[k] -= share * x[(first + i) * width + k];
+      }
+      for (int k = 0; k < width; ++k) row[k] = row[k] * inverse[first + j];
     }
   }
 }

@@ -27,9 +27,13 @@ bool seesThrough(const BasisRows& basis, const LayerRows& layer) {
 
 template <typename S>
 void solveOf(const BasisRows& basis, StackRows& stack) {
+  const LayerRows* last = nullptr;
   const auto prepare = [&](LayerRows& layer) {
-    if (!layer.given_modes) layerModes<S>(basis, layer, rows(stack.scratch));
-    modesAtNodes<S>(basis, layer);
+    if (last == nullptr || !takeModes<S>(basis, layer, *last)) {
+      if (!layer.given_modes) layerModes<S>(basis, layer, rows(stack.scratch));
+      modesAtNodes<S>(basis, layer);
+    }
+    last = &layer;
     layerPassage<S>(basis, layer);
   };
   if (stack.layers == 1 && stack.black && !stack.layer[0].infinite) {

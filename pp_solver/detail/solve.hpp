@@ -65,7 +65,8 @@ inline void layerModes(const BasisRows& basis, LayerRows& layer, Vec* scratch) {
   const int n = basis.n, width = rowWidth<S>(n), stride = width * perVec<S>();
   S *d = numbers<S>(scratch), *e = numbers<S>(scratch + width), *c = numbers<S>(scratch + 2 * width),
     *s = numbers<S>(scratch + 3 * width), *even_root = numbers<S>(scratch + 4 * width),
-    *odd_root = numbers<S>(scratch + 5 * width), *odd_inverse = numbers<S>(scratch + 6 * width);
+    *odd_root = numbers<S>(scratch + 5 * width), *odd_inverse = numbers<S>(scratch + 6 * width),
+    *alpha_inverse = numbers<S>(scratch + 7 * width);
   Vec* v = rows(layer.y);
   const S* loss = numbers<S>(rows(layer.loss));
   const S *alpha = numbers<S>(rows(basis.alpha)), *beta = numbers<S>(rows(basis.beta));
@@ -74,6 +75,7 @@ inline void layerModes(const BasisRows& basis, LayerRows& layer, Vec* scratch) {
     even_root[j] = root(S(maximum(loss[2 * j], S(S{} + 1e-300))));
     odd_root[j] = root(loss[2 * j + 1]);
     odd_inverse[j] = 1. / odd_root[j];
+    alpha_inverse[j] = 1. / alpha[j];
     d[j] = alpha[j] / even_root[j] * odd_inverse[j];
   }
   const auto conservative = loss[0] == 0.;
@@ -89,7 +91,7 @@ inline void layerModes(const BasisRows& basis, LayerRows& layer, Vec* scratch) {
     S *x = numbers<S>(rows(layer.x)) + j * stride, *y = numbers<S>(rows(layer.y)) + j * stride;
     S next{}, square{};
     for (int i = n - 1; i >= 0; --i) {
-      next = (odd_root[i] * y[i] - beta[i] * next) / alpha[i];
+      next = (odd_root[i] * y[i] - beta[i] * next) * alpha_inverse[i];
       x[i] = next;
       square += even_loss[2 * i] * next * next;
       y[i] = y[i] * odd_inverse[i];
@@ -97,6 +99,28 @@ inline void layerModes(const BasisRows& basis, LayerRows& layer, Vec* scratch) {
     numbers<S>(rows(layer.k2))[j] = square;
     numbers<S>(rows(layer.k))[j] = root(square);
   }
+}
+
+// The modes of a layer whose scattering is the same, taken over.
+template <typename S>
+inline bool takeModes(const BasisRows& basis, LayerRows& layer, const LayerRows& other) {
+  const int n = basis.n, width = rowWidth<S>(n);
+  if (layer.given_modes || other.given_modes) return false;
+  const S *loss = numbers<S>(rows(layer.loss)), *other_loss = numbers<S>(rows(other.loss));
+  for (int j = 0; j < 2 * n; ++j)
+    if (!all(loss[j] == other_loss[j])) return false;
+  const auto copy = [&](double* to, const double* from, int count) {
+    for (int i = 0; i < count; ++i) rows(to)[i] = rows(from)[i];
+  };
+  copy(layer.x, other.x, n * width);
+  copy(layer.y, other.y, n * width);
+  copy(layer.x_hat, other.x_hat, n * width);
+  copy(layer.y_hat, other.y_hat, n * width);
+  copy(layer.k, other.k, width);
+  copy(layer.k2, other.k2, width);
+  copy(layer.x_flux, other.x_flux, width);
+  copy(layer.y_flux, other.y_flux, width);
+  return true;
 }
 
 // Node values of the modes, and what they carry.
