@@ -38,7 +38,8 @@ void restart(double* vector, const Vector& basis, int count, int n) {
   double room = -1.;
   for (int i = 0; i < n; ++i) {
     double rest = 1.;
-    for (int j = 0; j < count; ++j) rest -= basis[static_cast<size_t>(j) * n + i] * basis[static_cast<size_t>(j) * n + i];
+    for (int j = 0; j < count; ++j)
+      rest -= basis[static_cast<size_t>(j) * n + i] * basis[static_cast<size_t>(j) * n + i];
     if (rest > room) {
       room = rest;
       least = i;

@@ -23,7 +23,8 @@ DoubleGauss doubleGauss(int streams);
 //     mu q_odd[j] = alpha[j] q_even[j] + beta[j] q_even[j + 1],
 // and the eigenproblem of a layer becomes the singular values of a bidiagonal matrix.
 //
-// Here even[j] has l = m + 2 j, odd[j] has l = m + 2 j + 1; n = N / 2 of each, those with l >= N only to fill the space.
+// Here even[j] has l = m + 2 j, odd[j] has l = m + 2 j + 1; n = N / 2 of each, those with l >= N only to fill the
+// space.
 struct DiscreteLegendre {
   int n = 0, mode = 0;
   std::vector<double> alpha, beta;  // n each; beta[n - 1] = 0

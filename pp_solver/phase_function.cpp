@@ -62,7 +62,8 @@ PhaseFunction PhaseFunction::sampled(std::vector<double> cosines, std::vector<do
   require(cosines.back() == 1., "last cosine", cosines.back(), "1");
   double integral = 0.;
   for (size_t i = 0; i < values.size(); ++i) {
-    require(std::isfinite(values[i]) && values[i] >= 0., "phase function sample", values[i], "finite and no less than 0");
+    require(std::isfinite(values[i]) && values[i] >= 0., "phase function sample", values[i],
+            "finite and no less than 0");
     if (i == 0) continue;
     require(cosines[i] > cosines[i - 1], "cosine", cosines[i], "above the one before");
     integral += 0.5 * (values[i] + values[i - 1]) * (cosines[i] - cosines[i - 1]);

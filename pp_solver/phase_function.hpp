@@ -35,7 +35,7 @@ class PhaseFunction {
 
  private:
   double asymmetry_ = 0.;
-  std::vector<double> moments_;            // of a series, or empty
+  std::vector<double> moments_;           // of a series, or empty
   std::vector<double> cosines_, values_;  // of samples, or empty
 };
 

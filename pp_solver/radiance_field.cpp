@@ -24,15 +24,17 @@ double difference(double p, double q, double z) {
 
 // Light of the beam scattered once, the source 1 at the layer's top and falling as e^-rate z: what arrives at depth z
 // along a view whose extinction per depth is m.
-double onceDown(double rate, double m, double z) { return m * difference(rate, m, z); }
+double onceDown(double rate, double m, double z) {
+  return m * difference(rate, m, z);
+}
 double onceUp(double rate, double m, double z, double w) {
   return m * (std::exp(-rate * z) - (std::isinf(w) ? 0. : std::exp(-m * (w - z) - rate * w))) / (m + rate);
 }
 
 // Where light is asked for: within each layer, the depths and what they are the answer to.
 struct Levels {
-  std::vector<double> z;         // scaled, from the layer's top; the first is 0, the last the bottom of a finite layer
-  std::vector<int> output;       // index of the depth asked for, or -1
+  std::vector<double> z;    // scaled, from the layer's top; the first is 0, the last the bottom of a finite layer
+  std::vector<int> output;  // index of the depth asked for, or -1
 };
 
 // Diffuse light that follows one direction, down and up, of each lane.
@@ -74,7 +76,8 @@ class Tracer {
   double phaseInto(std::size_t p, double mu, double azimuth) const;
   void addBundle(const BasisRows& rows, bool sine, std::vector<double>& added);
   void followDirection(const BasisRows& rows, StackRows& stack, double mu, bool sine, double* down, double* up);
-  void viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t p, double mu, bool sine, double* down, double* up);
+  void viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t p, double mu, bool sine, double* down,
+                        double* up);
   int modesWithLight() const;
 
   Solver::State& s_;

@@ -16,8 +16,8 @@ using detail::LayerRows;
 // matrices of S and D, and the beam's source.
 struct NodeEquation {
   int n;
-  std::vector<double> extinction, even, odd;       // G; E and O [i * n + j], weights of node j included
-  std::vector<double> beam_down, beam_up;          // source at the layer's top
+  std::vector<double> extinction, even, odd;  // G; E and O [i * n + j], weights of node j included
+  std::vector<double> beam_down, beam_up;     // source at the layer's top
   double rate = 0., loss = 1.;
 };
 

@@ -41,8 +41,7 @@ void fill(const BasisRows& basis, StackRows& stack, int lane, const SlabCase& sl
     moment = power;
     power *= slab.asymmetry;
   }
-  const double scale =
-      detail::scaleMoments(slab.albedo, moments.data(), streams, delta_m, layer.scatter + lane, lanes);
+  const double scale = detail::scaleMoments(slab.albedo, moments.data(), streams, delta_m, layer.scatter + lane, lanes);
   for (int l = 0; l < streams; ++l) layer.loss[l * lanes + lane] = 1. - layer.scatter[l * lanes + lane];
   layer.loss[lane] = (1. - slab.albedo) / scale;
   layer.thickness[lane] = slab.thickness * scale;

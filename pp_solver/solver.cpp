@@ -18,7 +18,9 @@ using detail::ScaledLayer;
 
 constexpr double kPi = std::numbers::pi;
 
-double relax(double x) { return x == 0. ? 1. : -std::expm1(-x) / x; }
+double relax(double x) {
+  return x == 0. ? 1. : -std::expm1(-x) / x;
+}
 
 // -(d/dx) (1 - e^-x) / x, above 0
 double relaxSlope(double x) {
@@ -170,7 +172,9 @@ double Solver::absorbed(double depth0, double depth1) const {
   return (top.down + top.direct - top.up) - (bottom.down + bottom.direct - bottom.up);
 }
 
-int Solver::azimuthModes() const { return state_->modes_used; }
+int Solver::azimuthModes() const {
+  return state_->modes_used;
+}
 
 double Solver::radiance(double depth, double mu, double phi) {
   double result = 0.;

@@ -47,7 +47,7 @@ class Solver {
   double direct() const;         // the beam's share of transmittance [1]
   double absorptance() const;    // absorbed by the layers over `incident`, integrated from the mean intensity [1]
 
-  Fluxes fluxes(double depth) const;                   // depth in [0, total thickness]
+  Fluxes fluxes(double depth) const;                    // depth in [0, total thickness]
   double absorbed(double depth0, double depth1) const;  // flux absorbed between two depths [flux]
 
   // Radiance of diffuse light (the direct beam left out) at every depth, in every direction:
@@ -60,8 +60,9 @@ class Solver {
   int azimuthModes() const;  // how many the last radiances() took
 
   // The solution put back into its equation: the largest deviation of mu dI/dz from -G I + source, averaged over a step
-  // in which no light decays by more than a quarter, over the ordinates, nine depths of each layer and the azimuth modes
-  // 0 .. modes - 1, in units of the largest radiance or source there. The source is summed anew from the radiances.
+  // in which no light decays by more than a quarter, over the ordinates, nine depths of each layer and the azimuth
+  // modes 0 .. modes - 1, in units of the largest radiance or source there. The source is summed anew from the
+  // radiances.
   double residual(int modes = 1);
 
   struct State;

@@ -191,7 +191,8 @@ inline void layerStack(const BasisRows& basis, StackRows& stack, Prepare prepare
   Vec *z = rows(stack.admittance), *offset = rows(stack.offset);
   Vec *z_ground = z + count * square, *offset_ground = offset + count * width;
   for (int i = 0; i < square; ++i) z_ground[i] = stack.black ? Vec{} : rows(stack.ground_matrix)[i];
-  for (int k = 0; k < width; ++k) offset_ground[k] = stack.black ? -rows(stack.bottom_in)[k] : rows(stack.ground_row)[k];
+  for (int k = 0; k < width; ++k)
+    offset_ground[k] = stack.black ? -rows(stack.bottom_in)[k] : rows(stack.ground_row)[k];
   if (stack.black) addIdentity<S>(z_ground, n, width);
   for (int p = count - 1; p >= 0; --p) {
     prepare(stack.layer[p]);

@@ -63,8 +63,7 @@ template <typename S, int kRows>
 inline void multiplyRows(Vec* c, const S* a, const Vec* b, int inner, int width, int row_step, int inner_step,
                          int from) {
   int k = from;
-  for (; k + 4 <= width; k += 4)
-    multiplyBlock<S, kRows, 4>(c + k, a, b + k, inner, width, row_step, inner_step);
+  for (; k + 4 <= width; k += 4) multiplyBlock<S, kRows, 4>(c + k, a, b + k, inner, width, row_step, inner_step);
   if (k + 2 <= width) {
     multiplyBlock<S, kRows, 2>(c + k, a, b + k, inner, width, row_step, inner_step);
     k += 2;

@@ -40,7 +40,8 @@ void Solver::State::findHotSpot() {
   const auto meet = [&](double z, double weight) {  // once scattered light on its way up that meets leaves at depth z
     double density = 0.;
     for (int i = 0; i < n; ++i) {
-      const double mu = ordinates->mu()[i], root = std::sqrt(ordinates->weight()[i]), g = tables[0]->nodes().projection(i);
+      const double mu = ordinates->mu()[i], root = std::sqrt(ordinates->weight()[i]),
+                   g = tables[0]->nodes().projection(i);
       const double m = g / mu, up = 0.5 * (row.even_source[i] - row.odd_source[i]) / (root * mu);
       const double leaving = up * (std::exp(-kappa * z) - std::exp(-m * (w - z) - kappa * w)) / (m + kappa);
       const double ground = albedo / std::numbers::pi * beam * mu0 * std::exp(-kappa * w - m * (w - z));
@@ -52,8 +53,7 @@ void Solver::State::findHotSpot() {
   };
   using Gauss = boost::math::quadrature::gauss<double, 30>;
   for (std::size_t q = 0; q < Gauss::abscissa().size(); ++q)
-    for (const double side : {-1., 1.})
-      meet(0.5 * w * (1. + side * Gauss::abscissa()[q]), Gauss::weights()[q]);
+    for (const double side : {-1., 1.}) meet(0.5 * w * (1. + side * Gauss::abscissa()[q]), Gauss::weights()[q]);
   const ScatteredOnce excess = hotSpotFlux(leaves, w, mu0);
   const double flux = (excess.leaves + albedo * excess.gap) / mu0;
   if (!(met > 0.)) return;

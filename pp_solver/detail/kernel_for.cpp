@@ -13,8 +13,8 @@ void scatterRowsOf(const BasisRows& basis, const double* scatter, const double* 
                                    numbers<S>(rows(first))[0], rows(even), rows(odd));
 }
 
-// Whether the sum and the difference of both ends of the only layer hold what crosses it with nearly all its digits: the
-// light that comes out is no less than a thousandth of what entered, in the slowest mode.
+// Whether the sum and the difference of both ends of the only layer hold what crosses it with nearly all its digits:
+// the light that comes out is no less than a thousandth of what entered, in the slowest mode.
 template <typename S>
 bool seesThrough(const BasisRows& basis, const LayerRows& layer) {
   S most{}, slowest{};

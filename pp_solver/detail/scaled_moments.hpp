@@ -6,8 +6,9 @@ namespace sunfleck::pp::detail {
 
 // (P9) Moments as N directions can carry them (delta-M, Wiscombe 1977): the share f of the scattering that goes nearly
 // straight on counts as not scattered; of a backward peak too sharp for N moments, the unresolved part is spread, its
-// l-th moment falling as e^-3(l/N)^2, so that the kernel stays above 0 where the peak's own moments would make it swing.
-// Writes the scaled omega chi_l to scatter[l * stride] and returns the ratio of scaled to true depth, 1 - omega f.
+// l-th moment falling as e^-3(l/N)^2, so that the kernel stays above 0 where the peak's own moments would make it
+// swing. Writes the scaled omega chi_l to scatter[l * stride] and returns the ratio of scaled to true depth, 1 - omega
+// f.
 //   chi  moments 0 .. streams of the phase function
 inline double scaleMoments(double albedo, const double* chi, int streams, bool delta_m, double* scatter, int stride) {
   const double last = chi[streams], before = chi[streams - 1];

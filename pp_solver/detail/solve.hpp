@@ -10,8 +10,12 @@ using detail::BasisRows;
 using detail::LayerRows;
 using detail::StackRows;
 
-inline Vec* rows(double* p) { return reinterpret_cast<Vec*>(p); }
-inline const Vec* rows(const double* p) { return reinterpret_cast<const Vec*>(p); }
+inline Vec* rows(double* p) {
+  return reinterpret_cast<Vec*>(p);
+}
+inline const Vec* rows(const double* p) {
+  return reinterpret_cast<const Vec*>(p);
+}
 
 // result += sum over j of weight[j] matrix[j]
 template <typename S>
@@ -26,8 +30,8 @@ inline void project(S* result, const Vec* matrix, const Vec* row, int n, int wid
   for (int j = 0; j < n; ++j) result[j] = rowProduct<S>(matrix + j * width, row, n);
 }
 
-// (P4) omega chi_l sqrt(2 l + 1) Lambda_l^m(mu), carried from the true functions to the discrete ones: how much light of
-// direction mu each q_l scatters, and receives.
+// (P4) omega chi_l sqrt(2 l + 1) Lambda_l^m(mu), carried from the true functions to the discrete ones: how much light
+// of direction mu each q_l scatters, and receives.
 //   even, odd  rows in the basis
 template <typename S>
 inline void scatterRows(const BasisRows& basis, const S* scatter, S mu, S first, Vec* even, Vec* odd) {
@@ -173,8 +177,8 @@ inline void layerPassage(const BasisRows& basis, LayerRows& layer) {
 // Particular solution at the layer's ends: S at the bottom, D at the top and at the bottom, as hats over the nodes; and
 // S at the top, which only emission has.
 template <typename S>
-inline void particular(const BasisRows& basis, const LayerRows& layer, Vec* modes, Vec* s_top, Vec* d_top, Vec* s_bottom,
-                       Vec* d_bottom) {
+inline void particular(const BasisRows& basis, const LayerRows& layer, Vec* modes, Vec* s_top, Vec* d_top,
+                       Vec* s_bottom, Vec* d_bottom) {
   const int n = basis.n, width = rowWidth<S>(n);
   const S rate = numbers<S>(rows(layer.rate))[0], thickness = numbers<S>(rows(layer.thickness))[0];
   const S planck_top = numbers<S>(rows(layer.planck_top))[0], planck_bottom = numbers<S>(rows(layer.planck_bottom))[0],

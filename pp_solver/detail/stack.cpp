@@ -12,11 +12,15 @@ namespace {
 
 constexpr std::size_t kAlignment = 64, kGrain = kAlignment / sizeof(double);
 
-std::size_t roundUp(std::size_t count, std::size_t grain) { return (count + grain - 1) / grain * grain; }
+std::size_t roundUp(std::size_t count, std::size_t grain) {
+  return (count + grain - 1) / grain * grain;
+}
 
 }  // namespace
 
-void RowMemory::Free::operator()(double* p) const { std::free(p); }
+void RowMemory::Free::operator()(double* p) const {
+  std::free(p);
+}
 
 double* RowMemory::take(std::size_t count) {
   count = roundUp(std::max<std::size_t>(count, 1), kGrain);
@@ -101,9 +105,10 @@ void shape(StackRows& stack, const BasisRows& basis, int layers) {
     for (double** p : {&layer.thickness, &layer.rate, &layer.planck_top, &layer.planck_bottom, &layer.planck_drift})
       *p = take(lanes);
     for (double** p : {&layer.x, &layer.y, &layer.x_hat, &layer.y_hat, &layer.factor}) *p = take(square);
-    for (double** p : {&layer.even_source, &layer.odd_source, &layer.k, &layer.k2, &layer.x_flux, &layer.y_flux,
-                       &layer.x_mean, &layer.x_absorb, &layer.a, &layer.g, &layer.s, &layer.t, &layer.through, &layer.u_top,
-                       &layer.u_bottom, &layer.v_top, &layer.v_bottom, &layer.factor_inverse, &layer.remainder})
+    for (double** p :
+         {&layer.even_source, &layer.odd_source, &layer.k, &layer.k2, &layer.x_flux, &layer.y_flux, &layer.x_mean,
+          &layer.x_absorb, &layer.a, &layer.g, &layer.s, &layer.t, &layer.through, &layer.u_top, &layer.u_bottom,
+          &layer.v_top, &layer.v_bottom, &layer.factor_inverse, &layer.remainder})
       *p = take(row);
   }
   for (double** p : {&stack.top_in, &stack.bottom_in, &stack.ground_row, &stack.s_top, &stack.d_top, &stack.s_bottom,

@@ -124,7 +124,8 @@ void Solver::State::fillGround(const BasisRows& rows, StackRows& stack_rows, boo
   const int lanes = rows.lanes;
   const Ground& ground = problem.ground;
   const bool infinite = std::isinf(depth);
-  const double arriving = sine || infinite ? 0. : beam * mu0 * scaledBeam(layers.size() - 1, layers.back().true_thickness);
+  const double arriving =
+      sine || infinite ? 0. : beam * mu0 * scaledBeam(layers.size() - 1, layers.back().true_thickness);
   const bool shaped = ground.brdf && !infinite;
   stack_rows.black = infinite || !(shaped || ground.albedo > 0.);
   for (int lane = 0; lane < lanes; ++lane) {
@@ -156,8 +157,8 @@ void Solver::State::fillGround(const BasisRows& rows, StackRows& stack_rows, boo
       if (m < ground.brdf_modes)
         for (int i = 0; i < n; ++i)
           for (int j = 0; j < n; ++j)
-            reflect(i, j) = flat[i] * flat[j] * kPi * (m == 0 ? 2. : 1.) *
-                            ground.brdf(m, ordinates->mu()[i], ordinates->mu()[j]);
+            reflect(i, j) =
+                flat[i] * flat[j] * kPi * (m == 0 ? 2. : 1.) * ground.brdf(m, ordinates->mu()[i], ordinates->mu()[j]);
       reflect = 0.5 * (reflect + reflect.transpose()).eval();
       if (flat_mode) source += ground.emission * (flat - reflect * flat);
       if (m < ground.brdf_modes)
@@ -185,8 +186,8 @@ void Solver::State::prepareLeaves(std::size_t index) {
   auto found = std::find_if(leaf_tables.begin(), leaf_tables.end(),
                             [&](const auto& table) { return table->angles() == angles; });
   if (found == leaf_tables.end())
-    found = leaf_tables.insert(
-        found, std::make_unique<detail::LeafTables>(angles, ordinates->mu(), ordinates->weight()));
+    found =
+        leaf_tables.insert(found, std::make_unique<detail::LeafTables>(angles, ordinates->mu(), ordinates->weight()));
   tables[index] = found->get();
   tables[index]->setBeam(mu0);
   layers[index].projection = tables[index]->beamProjection();
@@ -260,8 +261,7 @@ void Solver::State::solveBundle(const BasisRows& rows, StackRows& stack_rows, bo
   pathOf(rows).solve(rows, stack_rows);
 }
 
-double Solver::State::leafView(const BasisRows& rows, std::size_t index, double mu, double* even,
-                               double* odd) const {
+double Solver::State::leafView(const BasisRows& rows, std::size_t index, double mu, double* even, double* odd) const {
   const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
   const LeafKernel& scattering = tables[index]->intoViews(static_cast<int>(rows.mode[0]));
   std::vector<double> all_even(scattering.modulus.size()), all_odd(scattering.modulus.size());

@@ -11,7 +11,8 @@
 
 namespace sunfleck::pp {
 
-// What a Solver holds. A `bundle` is what the kernel solves at once: one azimuth mode, or as many as a vector has lanes.
+// What a Solver holds. A `bundle` is what the kernel solves at once: one azimuth mode, or as many as a vector has
+// lanes.
 struct Solver::State {
   Settings settings;
   int n;  // streams / 2
@@ -21,7 +22,7 @@ struct Solver::State {
   Problem problem;
   std::vector<detail::ScaledLayer> layers;
   bool solved = false, any_leaves = false;
-  double depth = 0.;  // of the whole stack, true
+  double depth = 0.;           // of the whole stack, true
   double mu0 = 1., beam = 0.;  // irradiance normal to the beam
   int modes_used = 0;
 
@@ -75,7 +76,8 @@ struct Solver::State {
   double leafView(const detail::BasisRows& rows, std::size_t index, double mu, double* even, double* odd) const;
 
   // Source of the beam's first scattering into mu at the layer's top, downward and upward, in azimuth mode `lane`.
-  void beamSource(const detail::BasisRows& rows, int lane, std::size_t index, double mu, double& down, double& up) const;
+  void beamSource(const detail::BasisRows& rows, int lane, std::size_t index, double mu, double& down,
+                  double& up) const;
 
   // Radiance that leaves the ground along mu, but for what `below` sends by itself.
   double groundRadiance(const detail::BasisRows& rows, const detail::StackRows& stack_rows, int lane, double mu,

@@ -10,10 +10,16 @@ constexpr int kLanes = SUNFLECK_LANES;
 typedef double Vec __attribute__((vector_size(8 * kLanes), may_alias));
 typedef std::int64_t Mask __attribute__((vector_size(8 * kLanes), may_alias));
 
-inline double select(bool where, double a, double b) { return where ? a : b; }
-inline Vec select(Mask where, Vec a, Vec b) { return where ? a : b; }
+inline double select(bool where, double a, double b) {
+  return where ? a : b;
+}
+inline Vec select(Mask where, Vec a, Vec b) {
+  return where ? a : b;
+}
 
-inline bool all(bool b) { return b; }
+inline bool all(bool b) {
+  return b;
+}
 inline bool all(Mask m) {
   std::int64_t every = -1;
   for (int i = 0; i < kLanes; ++i) every &= m[i];
@@ -33,17 +39,27 @@ inline T magnitude(T a) {
   return select(a < 0., T(-a), a);
 }
 
-inline double root(double x) { return __builtin_sqrt(x); }
+inline double root(double x) {
+  return __builtin_sqrt(x);
+}
 inline Vec root(Vec x) {
   Vec r;
   for (int i = 0; i < kLanes; ++i) r[i] = __builtin_sqrt(x[i]);
   return r;
 }
 
-inline std::int64_t bits(double x) { return __builtin_bit_cast(std::int64_t, x); }
-inline Mask bits(Vec x) { return (Mask)x; }
-inline double real(std::int64_t x) { return __builtin_bit_cast(double, x); }
-inline Vec real(Mask x) { return (Vec)x; }
+inline std::int64_t bits(double x) {
+  return __builtin_bit_cast(std::int64_t, x);
+}
+inline Mask bits(Vec x) {
+  return (Mask)x;
+}
+inline double real(std::int64_t x) {
+  return __builtin_bit_cast(double, x);
+}
+inline Vec real(Mask x) {
+  return (Vec)x;
+}
 
 // e^-x for x >= 0, infinity included, to 1 unit in the last place; 0 where it would be below 1e-299.
 template <typename T>
