@@ -64,8 +64,9 @@ class Solver {
   // not those of the solution's own formulas.
   double residual(int modes = 1);
 
- private:
   struct State;
+
+ private:
   std::unique_ptr<State> state_;
 };
 

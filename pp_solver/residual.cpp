@@ -1,0 +1,1 @@
+#include "pp_solver/detail/state.hpp"
