@@ -173,8 +173,9 @@ std::string describe(const StressProblem& drawn) {
        << problem.ground.albedo << ", layers (thickness omega chi_1 chi_2)";
   for (const pp::Layer& layer : problem.layers) {
     const auto& particles = std::get<pp::Particles>(layer.medium);
-    text << " (" << layer.thickness << ' ' << particles.albedo << ' ' << particles.phase.moment(1) << ' '
-         << particles.phase.moment(2) << ')';
+    std::array<double, 3> moments;
+    particles.phase.moments(moments);
+    text << " (" << layer.thickness << ' ' << particles.albedo << ' ' << moments[1] << ' ' << moments[2] << ')';
   }
   return text.str();
 }
