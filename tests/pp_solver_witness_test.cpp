@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "adding_doubling.hpp"
@@ -66,19 +67,15 @@ TEST(Witness, HIsThePrintedOne) {
   EXPECT_NEAR(h(1.), 2.90781, 6e-6);
 }
 
-struct PhaseCase {
-  double asymmetry;
-  int streams;
-};
+class AgainstDoubling : public testing::TestWithParam<double> {};
 
-class AgainstDoubling : public testing::TestWithParam<PhaseCase> {};
-
-// Check reflectance and transmittance of homogeneous slabs under beams and under a uniform sky.
+// Check reflectance and transmittance of homogeneous slabs under beams and under a uniform sky. By 128 directions: 64
+// are off by 4e-9 where a thin slab is lit at mu0 = .1.
 TEST_P(AgainstDoubling, FluxesOfSlabs) {
-  const auto [asymmetry, streams] = GetParam();
+  const double asymmetry = GetParam();
   const std::array mu0s{1., 0.5, 0.1};
   const AddingDoubling method(nodesFor(asymmetry), mu0s);
-  pp::Solver solver({.streams = streams});
+  pp::Solver solver({.streams = 128});
   for (const double albedo : {0.5, 0.95, 1.})
     for (const double thickness : {0.1, 1., 16.}) {
       SCOPED_TRACE(testing::Message() << "g " << asymmetry << " omega " << albedo << " tau " << thickness);
@@ -95,11 +92,9 @@ TEST_P(AgainstDoubling, FluxesOfSlabs) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(PhaseFunctions, AgainstDoubling,
-                         testing::Values(PhaseCase{0., 64}, PhaseCase{0.5, 64}, PhaseCase{-0.5, 64},
-                                         PhaseCase{0.85, 128}),
-                         [](const testing::TestParamInfo<PhaseCase>& phase) {
-                           return "Number" + std::to_string(phase.index);
+INSTANTIATE_TEST_SUITE_P(PhaseFunctions, AgainstDoubling, testing::Values(0., 0.5, -0.5, 0.85),
+                         [](const testing::TestParamInfo<double>& asymmetry) {
+                           return "G" + std::to_string(asymmetry.index);
                          });
 
 // Three unlike layers: scattering forward, by Rayleigh's law, and backward.
