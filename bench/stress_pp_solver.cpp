@@ -73,10 +73,11 @@ struct Tally {
 
 // What one problem yields, in shares of the light that enters it.
 struct Judged {
-  std::vector<double> values;  // all must be finite
-  double lowest = 0.;          // flux
-  double residual = 0.;        // of energy
-  double cavity = 0.;          // largest deviation from radiance 1
+  std::vector<double> values;    // all must be finite; in the order in which they are asked for
+  bool may_be_negative = false;  // flux, by a phase function cut to a series that is negative somewhere
+  double lowest = 0.;            // flux
+  double residual = 0.;          // of energy
+  double cavity = 0.;            // largest deviation from radiance 1
   std::uint64_t radiances = 0, negative_radiances = 0;
 };
 
@@ -87,6 +88,7 @@ Judged judge(pp::Solver& solver, const StressProblem& drawn) {
   double thickness = 0.;
   for (const pp::Layer& layer : problem.layers) thickness += layer.thickness;
   const bool infinite = std::isinf(thickness);
+  judged.may_be_negative = !drawn.settings.delta_m;
   const double emitted = drawn.isothermal ? pi : 0.;
   const double scale = std::max(solver.incident(), emitted);
   judged.values = {solver.incident(), solver.reflectance(), solver.transmittance(), solver.direct(),
@@ -128,9 +130,13 @@ Judged judge(pp::Solver& solver, const StressProblem& drawn) {
 
 template <typename Describe>
 void count(Tally& tally, const Judged& judged, bool cavity, std::uint64_t index, Describe&& text) {
-  const auto wrong = std::ranges::count_if(judged.values, [](double v) { return !std::isfinite(v); });
-  if (wrong > 0) tally.note(kFinite, static_cast<double>(wrong), true, index, text);
-  tally.note(kNotNegative, -judged.lowest, !(judged.lowest >= -kNegativeTolerance), index, text);
+  const auto wrong = std::ranges::find_if(judged.values, [](double v) { return !std::isfinite(v); });
+  if (wrong != judged.values.end()) {
+    const std::string which = "value " + std::to_string(wrong - judged.values.begin()) + ": ";
+    tally.note(kFinite, 0., true, index, [&] { return which + text(); });
+  }
+  if (!judged.may_be_negative)
+    tally.note(kNotNegative, -judged.lowest, !(judged.lowest >= -kNegativeTolerance), index, text);
   if (cavity)
     tally.note(kCavity, judged.cavity, !(judged.cavity <= kEnergyTolerance), index, text);
   else

@@ -1,6 +1,7 @@
 // Check that the exact solver keeps the identities of radiative transfer: energy, reciprocity, symmetry, splitting.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -141,11 +142,15 @@ TEST(Splitting, ChangesNothing) {
       for (const std::vector<double>& shares :
            {std::vector<double>{0.5, 0.5}, {1e-9, 1. - 1e-9}, {0.1, 0.2, 0.05, 0.05, 0.3, 0.2, 0.1}}) {
         pp::Problem problem{.beam = pp::Beam{.mu0 = 0.5}};
-        for (const double share : shares) problem.layers.push_back(hgLayer(4. * share, albedo, asymmetry));
+        double bottom = 0.;
+        for (const double share : shares) {
+          problem.layers.push_back(hgLayer(4. * share, albedo, asymmetry));
+          bottom += 4. * share;
+        }
         parts.solve(problem);
         EXPECT_NEAR(parts.reflectance(), whole.reflectance(), 1e-10);
         EXPECT_NEAR(parts.transmittance(), whole.transmittance(), 1e-10);
-        for (const double depth : {0., 0.4, 1.7, 4.}) {
+        for (const double depth : {0., 0.4, 1.7, std::min(bottom, 4.)}) {
           EXPECT_NEAR(parts.fluxes(depth).mean_intensity, whole.fluxes(depth).mean_intensity, 1e-10);
           for (const double mu : {-0.9, -0.2, 0.3, 1.})
             EXPECT_NEAR(parts.radiance(depth, mu, 0.7), whole.radiance(depth, mu, 0.7), 1e-10)
