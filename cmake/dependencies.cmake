@@ -16,7 +16,6 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
-find_package(Eigen3 REQUIRED)
 
 # Debian 12's OpenImageIO target names an OpenCV include folder that the package does not install.
 get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)

@@ -34,6 +34,16 @@ bool isDark(const Sky& sky) {
   return radiance != nullptr && *radiance == 0.;
 }
 
+// A function can only be tried; the solver looks again at what it uses.
+void requireSky(const Sky& sky, const char* field) {
+  const Checked is;
+  if (const double* radiance = std::get_if<double>(&sky)) return is.radiance(*radiance, field);
+  const auto& function = std::get<1>(sky);
+  is.require(static_cast<bool>(function), field, "an empty function", "a function");
+  for (const double mu : {0.01, 0.3, 0.7, 1.})
+    for (const double phi : {0.1, 1.7, 3.3, 4.9}) is.radiance(function(mu, phi), field);
+}
+
 void requireLayer(const Problem& problem, std::size_t index) {
   const Layer& layer = problem.layers[index];
   const Checked is(index);
@@ -75,8 +85,8 @@ void requireSolvable(const Problem& problem) {
     is.require(std::isfinite(problem.beam->azimuth), "azimuth", problem.beam->azimuth, "finite");
     is.radiance(problem.beam->irradiance, "irradiance");
   }
-  if (const double* radiance = std::get_if<double>(&problem.above)) is.radiance(*radiance, "sky radiance");
-  if (const double* radiance = std::get_if<double>(&problem.below)) is.radiance(*radiance, "radiance from below");
+  requireSky(problem.above, "radiance from above");
+  requireSky(problem.below, "radiance from below");
   is.require(isDark(problem.below) || !std::isinf(problem.layers.back().thickness), "radiance from below", "some",
              "0 under an infinite layer");
   is.share(problem.ground.albedo, "ground albedo");

@@ -15,6 +15,8 @@ using detail::ScaledLayer;
 using detail::StackRows;
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kAureole = 10. * kPi / 180.;  // how far from the beam the aureole is corrected [rad]
+constexpr int kPeakMoments = 1024;             // as many moments of a peak are looked at
 
 // (e^-pz - e^-qz) / (q - p)
 double difference(double p, double q, double z) {
@@ -31,6 +33,18 @@ double onceUp(double rate, double m, double z, double w) {
   return m * (std::exp(-rate * z) - (std::isinf(w) ? 0. : std::exp(-m * (w - z) - rate * w))) / (m + rate);
 }
 
+// Second divided difference of e^-xz at a, b, b.
+double secondDifference(double a, double b, double z) {
+  const double x = (a - b) * z;
+  if (std::abs(x) > 0.5) return (z * std::exp(-b * z) - difference(a, b, z)) / (a - b);
+  double sum = 0., term = 0.5;  // z^2 e^-bz times the sum of (-x)^l / (l + 2)!
+  for (int l = 0; l < 16; ++l) {
+    sum += term;
+    term *= -x / (l + 3.);
+  }
+  return z * z * std::exp(-b * z) * sum;
+}
+
 // Where light is asked for: within each layer, the depths and what they are the answer to.
 struct Levels {
   std::vector<double> z;    // scaled, from the layer's top; the first is 0, the last the bottom of a finite layer
@@ -39,6 +53,12 @@ struct Levels {
 
 // Diffuse light that follows one direction, down and up, of each lane.
 class Tracer {
+  // What delta-M leaves out above a depth, of all layers together: omega f, and the moments of the peak, f_l / f.
+  struct Peak {
+    double share = 0., lost = 0.;
+    std::vector<double> moments;
+  };
+
  public:
   Tracer(Solver::State& state, std::span<const double> depths, std::span<const double> mus,
          std::span<const double> phis, std::span<double> result)
@@ -49,8 +69,8 @@ class Tracer {
     levels_.resize(s_.layers.size());
     for (std::size_t p = 0; p < s_.layers.size(); ++p) levels_[p] = {{0.}, {-1}};
     for (std::size_t d = 0; d < depths.size(); ++d) {
-      const std::size_t p = s_.layerAt(depths[d]);
-      levels_[p].z.push_back(std::min((depths[d] - s_.layers[p].top) * s_.layers[p].scale, s_.layers[p].thickness));
+      const auto [p, inside] = s_.placeAt(depths[d]);
+      levels_[p].z.push_back(inside * s_.layers[p].scale);
       levels_[p].output.push_back(static_cast<int>(d));
     }
     for (std::size_t p = 0; p < s_.layers.size(); ++p)
@@ -65,20 +85,19 @@ class Tracer {
 
   void addModes(bool sine);
   void addWhole();    // what needs no azimuth series: sky seen directly, first scattering
+  void addAureole();  // near the forward direction, downward
   void addHotSpot();  // at the top, upward
 
  private:
-  // Extinction per scaled depth along the view, over |mu|: with corrections that of the true medium.
-  double viewRate(std::size_t p, double mu) const {
-    if (s_.layers[p].leaves) return s_.projectionOf(p, mu) / mu;
-    return 1. / (mu * (s_.settings.corrections ? s_.layers[p].scale : 1.));
-  }
+  // Extinction per scaled depth along the view, over |mu|.
+  double viewRate(std::size_t p, double mu) const { return s_.projectionOf(p, mu) / mu; }
   double phaseInto(std::size_t p, double mu, double azimuth) const;
   void addBundle(const BasisRows& rows, bool sine, std::vector<double>& added);
   void followDirection(const BasisRows& rows, StackRows& stack, double mu, bool sine, double* down, double* up);
   void viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t p, double mu, bool sine, double* down,
                         double* up);
   int modesWithLight() const;
+  Peak peakAbove(double depth) const;
 
   Solver::State& s_;
   std::span<const double> depths_, mus_, phis_;
@@ -115,15 +134,14 @@ void Tracer::viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t
   double *even = memory_.take(rows.row), *odd = memory_.take(rows.row), *rate = memory_.take(lanes);
   double *depth = memory_.take(count * lanes), *scratch = memory_.take(2 * rows.row);
   double share = 1.;
-  if (layer.leaves) {
-    share = s_.leafView(rows, p, mu, even, odd);
+  if (row.given_modes) {
+    share = s_.nodeView(rows, p, mu, even, odd);
   } else {
     double *scatter = memory_.take(static_cast<std::size_t>(streams) * lanes), *cosine = memory_.take(lanes),
            *first = memory_.take(lanes);
-    const std::vector<double>& moments = s_.settings.corrections ? layer.true_scatter : layer.scatter;
     for (int lane = 0; lane < lanes; ++lane) {
       const int mode = static_cast<int>(rows.mode[lane]);
-      for (int j = 0; mode + j < streams; ++j) scatter[j * lanes + lane] = moments[mode + j];
+      for (int j = 0; mode + j < streams; ++j) scatter[j * lanes + lane] = layer.scatter[mode + j];
       cosine[lane] = mu;
       first[lane] = legendreStart(rows, lane, mu);
     }
@@ -227,14 +245,15 @@ void Tracer::addModes(bool sine) {
   }
 }
 
-// Share of the beam's light, per depth along the view, that one scattering turns into it [1/sr].
+// (P13) Share of the beam's light, per scaled depth along the view, that one scattering turns into it [1/sr]: by the whole
+// phase function, in the scaled medium (TMS of Nakajima & Tanaka 1988).
 double Tracer::phaseInto(std::size_t p, double mu, double azimuth) const {
   if (const auto* leaves = std::get_if<LeafScattering>(&s_.problem.layers[p].medium))
     return leafScattering(*leaves, mu, s_.mu0, azimuth) / s_.projectionOf(p, std::abs(mu));
   const double sines = std::sqrt((1. - s_.mu0) * (1. + s_.mu0) * (1. - mu) * (1. + mu));
   const double cosine = std::clamp(sines * std::cos(azimuth) + s_.mu0 * mu, -1., 1.);
   const auto& particles = std::get<Particles>(s_.problem.layers[p].medium);
-  return particles.albedo * particles.phase(cosine);
+  return particles.albedo * particles.phase(cosine) / s_.layers[p].scale;
 }
 
 void Tracer::addWhole() {
@@ -272,6 +291,61 @@ void Tracer::addWhole() {
     }
 }
 
+Tracer::Peak Tracer::peakAbove(double depth) const {
+  Peak peak;
+  double path = 0., scattered = 0.;
+  std::vector<double> moments(kPeakMoments), sums(kPeakMoments, 0.);
+  for (std::size_t p = 0; p < s_.layers.size(); ++p) {
+    const ScaledLayer& layer = s_.layers[p];
+    const double inside = std::clamp(depth - layer.top, 0., layer.true_thickness);
+    path += inside;
+    if (layer.scale == 1. || !(inside > 0.)) continue;
+    const auto& particles = std::get<Particles>(s_.problem.layers[p].medium);
+    const double peaked = (1. - layer.scale) * inside;  // omega f times depth
+    scattered += peaked;
+    particles.phase.moments(moments);
+    const double f = (1. - layer.scale) / layer.albedo;
+    for (int l = 0; l < kPeakMoments; ++l) sums[l] += peaked * (l < s_.settings.streams ? 1. : moments[l] / f);
+  }
+  if (!(scattered > 0.)) return peak;
+  peak.lost = scattered / path;
+  peak.share = scattered;
+  while (!sums.empty() && std::abs(sums.back()) < 1e-12 * scattered) sums.pop_back();
+  for (const double sum : sums) peak.moments.push_back(sum / scattered);
+  return peak;
+}
+
+// (P13) The second order of the peak that delta-M takes for unscattered light, near the beam's direction (IMS of Nakajima &
+// Tanaka 1988): the scaled beam holds all of it in one direction, in truth it is spread.
+void Tracer::addAureole() {
+  if (s_.beam == 0.) return;
+  const double phi0 = s_.problem.beam->azimuth, sine0 = std::sqrt((1. - s_.mu0) * (1. + s_.mu0));
+  for (std::size_t d = 0; d < depths_.size(); ++d) {
+    const Peak peak = peakAbove(depths_[d]);
+    if (peak.share == 0.) continue;
+    for (std::size_t i = 0; i < mus_.size(); ++i) {
+      if (mus_[i] < 0.) continue;
+      const double mu = mus_[i], sines = sine0 * std::sqrt((1. - mu) * (1. + mu));
+      const double kappa = (1. - peak.lost) / s_.mu0;
+      const double path = secondDifference(1. / mu, kappa, depths_[d]) / (mu * s_.mu0) * (1. - peak.lost);
+      for (std::size_t j = 0; j < phis_.size(); ++j) {
+        const double cosine = std::clamp(sines * std::cos(phis_[j] - phi0) + s_.mu0 * mu, -1., 1.);
+        if (std::acos(cosine) > kAureole) continue;
+        double sum = 0., now = 1., before = 0.;
+        for (std::size_t l = 0; l < peak.moments.size(); ++l) {
+          const double order = static_cast<double>(l), part = peak.moments[l];
+          sum += (2. * order + 1.) * part * (2. - part) * now;
+          const double next = ((2. * order + 1.) * cosine * now - order * before) / (order + 1.);
+          before = now;
+          now = next;
+        }
+        result_[(d * mus_.size() + i) * phis_.size() + j] -=
+            s_.beam / (4. * kPi) * peak.lost * peak.lost / (1. - peak.lost) * sum * path;
+      }
+    }
+  }
+}
+
 // (P22), and what (P11) takes from the light of higher orders, from each direction alike.
 void Tracer::addHotSpot() {
   const auto& leaves = std::get<LeafScattering>(s_.problem.layers[0].medium);
@@ -299,8 +373,6 @@ void Solver::radiances(std::span<const double> depths, std::span<const double> m
   require(s.solved, "problems solved", 0, "one before radiances are asked for");
   require(result.size() == depths.size() * mus.size() * phis.size(), "size of result", result.size(),
           "depths x mus x phis");
-  for (const double depth : depths)
-    require(depth >= 0. && depth <= s.depth && !std::isinf(depth), "depth", depth, "finite and within the layers");
   for (const double mu : mus) require(mu != 0. && std::abs(mu) <= 1., "mu", mu, "in [-1, 1] and not 0");
   for (const double phi : phis) require(std::isfinite(phi), "phi", phi, "finite");
   s.modes_used = 0;
@@ -310,6 +382,7 @@ void Solver::radiances(std::span<const double> depths, std::span<const double> m
       std::holds_alternative<std::function<double(double, double)>>(s.problem.below))
     tracer.addModes(true);
   tracer.addWhole();
+  if (s.settings.corrections) tracer.addAureole();
   if (s.hasHotSpot()) tracer.addHotSpot();
 }
 

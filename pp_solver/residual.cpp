@@ -32,7 +32,15 @@ NodeEquation nodeEquation(const Solver::State& s, const BasisRows& rows, const L
                         .beam_up = std::vector<double>(n),
                         .rate = row.rate[0],
                         .loss = s.layers[p].loss};
-  if (s.layers[p].leaves) {
+  if (row.given_modes && !s.layers[p].leaves) {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        double &even = equation.even[i * n + j], &odd = equation.odd[i * n + j];
+        s.directionKernel(rows, p, s.ordinates->mu()[i], s.ordinates->mu()[j], even, odd);
+        even *= weight[j];
+        odd *= weight[j];
+      }
+  } else if (s.layers[p].leaves) {
     const auto& leaves = std::get<LeafScattering>(s.problem.layers[p].medium);
     s.tables[p]->betweenNodes(m).evenOdd(leaves.reflectance, leaves.transmittance, equation.even, equation.odd);
     for (int i = 0; i < n; ++i) {

@@ -133,19 +133,16 @@ double Solver::absorptance() const {
     }
     const double beam = s.beam * s.scaledBeam(p) * layer.projection * (row.infinite ? 1. / rate : w * relax(rate * w));
     absorbed += layer.loss * (2. * kPi * sum + beam);
-    if (row.planck_top[0] != 0. || row.planck_bottom[0] != 0.)
-      absorbed += layer.loss * 4. * kPi * 0.5 * (row.planck_top[0] + row.planck_bottom[0]) * w;
   }
   return absorbed / incident() + s.hot_spot.absorbed;
 }
 
 Fluxes Solver::fluxes(double depth) const {
   const State& s = *state_;
-  require(depth >= 0. && depth <= s.depth && !std::isinf(depth), "depth", depth, "finite and within the layers");
-  const std::size_t p = s.layerAt(depth);
+  const auto [p, inside] = s.placeAt(depth);
   const ScaledLayer& layer = s.layers[p];
   const LayerRows& row = s.stack.layer[p];
-  const double inside = std::min(depth - layer.top, layer.true_thickness), z = inside * layer.scale;
+  const double z = inside * layer.scale;
   s.kernel.single.fieldAt(s.basis, row, &z, s.u_row, s.v_row);
   double sum = 0., difference = 0., mean = 0.;
   for (int j = 0; j < s.n; ++j) {

@@ -16,6 +16,9 @@ struct Settings {
   // Radiance from the source function with the whole phase function for the first scattering (and the second near the
   // forward direction), instead of N moments.
   bool corrections = true;
+  // Scatter between the ordinates by the values of the phase function's series there (collocation), as DISORT does, in
+  // place of (P2): to compare digit by digit. Slower, and some sharp phase functions throw InvalidInput.
+  bool collocation = false;
   // The azimuth series ends when a mode adds less than this share of the radiance so far, twice in turn.
   double azimuth_tolerance = 1e-13;
 };
@@ -41,14 +44,14 @@ class Solver {
   void solve(const Problem& problem);
 
   // What follows speaks of the problem solved last.
-  double incident() const;       // flux that arrives at the top, and from below [flux]
+  double incident() const;       // flux that arrives at the top, and from below [flux]; without any, shares are not defined
   double reflectance() const;    // flux up at the top over `incident` [1]
   double transmittance() const;  // flux down at the bottom, direct beam included, over `incident` [1]; 0 if infinite
   double direct() const;         // the beam's share of transmittance [1]
-  double absorptance() const;    // absorbed by the layers over `incident`, integrated from the mean intensity [1]
+  double absorptance() const;    // absorbed by the layers less what they emit, over `incident`, by the mean intensity [1]
 
   Fluxes fluxes(double depth) const;                    // depth in [0, total thickness]
-  double absorbed(double depth0, double depth1) const;  // flux absorbed between two depths [flux]
+  double absorbed(double depth0, double depth1) const;  // net flux at depth0 less that at depth1 [flux]
 
   // Radiance of diffuse light (the direct beam left out) at every depth, in every direction:
   // result[(d * mus.size() + i) * phis.size() + j]. Solves as many azimuth modes as needed.

@@ -63,7 +63,7 @@ class PublishedProblem : public testing::TestWithParam<std::string> {};
 TEST_P(PublishedProblem, IsMetToThePrintedDigits) {
   const json given = problems().at(GetParam());
   const double omega = given.at("ssalb").at(0);
-  pp::Solver solver({.streams = given.at("nstr")});
+  pp::Solver solver({.streams = given.at("nstr"), .collocation = true});
   solver.solve(problemOf(given));
   const std::vector<double> depths = given.at("utau");
   for (std::size_t i = 0; i < depths.size(); ++i) {

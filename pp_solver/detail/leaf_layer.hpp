@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "pp_solver/detail/stack.hpp"
 #include "pp_solver/leaf_scattering.hpp"
 
 namespace sunfleck::pp::detail {
@@ -36,11 +35,5 @@ class LeafTables {
   std::map<int, LeafKernel> between_nodes_;
   LeafKernel from_beam_, into_views_, beam_into_views_;
 };
-
-// (P10) Eigenmodes of a layer of leaves: b = L L^T, L^T a L y = k^2 y with a = M^-1/2 (G - W^1/2 E W^1/2) M^-1/2 and b
-// likewise of O; x = L y, y = L^-T y as node values. Where leaves absorb next to nothing the constant field is taken
-// out before the eigenproblem is solved, since its k is known better than its digits.
-void leafModes(const BasisRows& basis, LayerRows& row, LeafTables& tables, const LeafScattering& leaves,
-               const std::vector<double>& weight);
 
 }  // namespace sunfleck::pp::detail

@@ -19,7 +19,7 @@ struct ScaledLayer {
   double albedo = 0.;                // true omega [1]
   double projection = 1.;            // G of the beam's direction; 1 for particles
   std::vector<double> scatter;       // scaled omega chi_l, l < N
-  std::vector<double> true_scatter;  // omega chi_l of the true phase function, l <= N
+  std::vector<double> moments;  // chi_l of the true phase function, l <= N
 };
 
 // Makes `scaled` from `layer`; keeps its memory.

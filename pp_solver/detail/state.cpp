@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+
+#include "core/require.hpp"
 
 namespace sunfleck::pp {
 namespace {
@@ -33,7 +36,7 @@ Solver::State::State(const Settings& s)
 
 const BasisRows& Solver::State::bundle(int first_mode) {
   auto& found = bundles[first_mode];
-  const bool wide = !any_leaves && kernel.lanes > 1;
+  const bool wide = !any_leaves && !settings.collocation && kernel.lanes > 1;
   if (!found || (found->lanes > 1) != wide)
     found = std::make_unique<BasisRows>(*ordinates, first_mode, true, kernel.lanes, wide);
   return *found;
@@ -48,7 +51,10 @@ double Solver::State::skyMode(const Sky& sky, int m, double mu, bool sine) const
   double sum = 0.;
   for (int i = 0; i < samples; ++i) {
     const double phi = 2. * kPi * (i + 0.5) / samples;
-    sum += function(mu, phi0 + phi) * (sine ? std::sin(m * phi) : std::cos(m * phi));
+    const double radiance = function(mu, phi0 + phi);
+    require(std::isfinite(radiance) && radiance >= 0., "sky radiance at mu " + std::to_string(mu), radiance,
+            "finite and no less than 0");
+    sum += radiance * (sine ? std::sin(m * phi) : std::cos(m * phi));
   }
   return (m == 0 ? 1. : 2.) * sum / samples;
 }
@@ -67,10 +73,14 @@ double Solver::State::trueBeam(double depth_below_top) const {
   return std::exp(-path / mu0);
 }
 
-std::size_t Solver::State::layerAt(double depth_below_top) const {
+Solver::State::Place Solver::State::placeAt(double depth_below_top) const {
+  constexpr double kRounding = 1e-12;
+  require(depth_below_top >= 0. && depth_below_top <= depth * (1. + kRounding) && !std::isinf(depth_below_top), "depth",
+          depth_below_top, "finite and within the layers");
+  if (depth_below_top >= depth) return {layers.size() - 1, layers.back().true_thickness};
   std::size_t index = 0;
   while (index + 1 < layers.size() && depth_below_top >= layers[index + 1].top) ++index;
-  return index;
+  return {index, std::min(depth_below_top - layers[index].top, layers[index].true_thickness)};
 }
 
 void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t index, bool sine) {
@@ -78,7 +88,7 @@ void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t
   const auto& path = pathOf(rows);
   const int lanes = rows.lanes, streams = settings.streams;
   row.infinite = std::isinf(layer.true_thickness);
-  row.given_modes = layer.leaves;
+  row.given_modes = layer.leaves || settings.collocation;
   const double amplitude = sine ? 0. : beam * scaledBeam(index);
   alignas(64) double mu[kMostLanes], first[kMostLanes];
   for (int lane = 0; lane < lanes; ++lane) {
@@ -102,21 +112,64 @@ void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t
             ? -(given.emission_bottom - given.emission_top) / (layer.thickness * row.loss[1 * lanes + lane])
             : 0.;
   }
-  if (layer.leaves) {
-    detail::LeafTables& table = *tables[index];
-    const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
-    const int m = static_cast<int>(rows.mode[0]);
-    std::vector<double> even(n), odd(n);
-    table.fromBeam(m).evenOdd(leaves.reflectance, leaves.transmittance, even, odd);
-    const double share = amplitude * (m == 0 ? 1. : 2.) / (2. * kPi);
-    for (int i = 0; i < n; ++i) {
-      row.even_source[i] = share * std::sqrt(ordinates->weight()[i]) * even[i];
-      row.odd_source[i] = share * std::sqrt(ordinates->weight()[i]) * odd[i];
-    }
-    leafModes(rows, row, table, leaves, ordinates->weight());
+  if (layer.leaves || settings.collocation) {
+    fillDense(rows, row, index, amplitude);
     return;
   }
   path.scatterRows(rows, row.scatter, mu, first, row.even_source, row.odd_source);
+}
+
+void Solver::State::fillDense(const BasisRows& rows, LayerRows& row, std::size_t index, double amplitude) {
+  const ScaledLayer& layer = layers[index];
+  const int m = static_cast<int>(rows.mode[0]);
+  const auto& weight = ordinates->weight();
+  const double share = amplitude * (m == 0 ? 1. : 2.) / (2. * kPi);
+  std::vector<double> even(n), odd(n);
+  detail::DenseMedium medium{.albedo = 1. - layer.loss, .loss = layer.loss, .extinction = std::vector<double>(n, 1.)};
+  if (layer.leaves) {
+    detail::LeafTables& table = *tables[index];
+    const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
+    table.fromBeam(m).evenOdd(leaves.reflectance, leaves.transmittance, even, odd);
+    const LeafKernel& between = table.betweenNodes(m);
+    medium.even.resize(between.modulus.size());
+    medium.odd.resize(between.modulus.size());
+    between.evenOdd(leaves.reflectance, leaves.transmittance, medium.even, medium.odd);
+    if (m == 0) medium.even = between.modulus;
+    for (int i = 0; i < n; ++i) medium.extinction[i] = table.nodes().projection(i);
+  } else {
+    const double omega = m == 0 && medium.albedo > 0. ? medium.albedo : 1.;
+    for (int i = 0; i < n; ++i) {
+      directionKernel(rows, index, ordinates->mu()[i], mu0, even[i], odd[i]);
+      for (int j = 0; j < n; ++j) {
+        double e, o;
+        directionKernel(rows, index, ordinates->mu()[i], ordinates->mu()[j], e, o);
+        medium.even.push_back(e / omega);
+        medium.odd.push_back(o);
+      }
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    row.even_source[i] = share * std::sqrt(weight[i]) * even[i];
+    row.odd_source[i] = share * std::sqrt(weight[i]) * odd[i];
+  }
+  denseModes(rows, row, medium, weight);
+}
+
+// E and O of particles between two directions, from N moments.
+void Solver::State::directionKernel(const BasisRows& rows, std::size_t index, double mu, double other, double& even,
+                                    double& odd) const {
+  const int m = static_cast<int>(rows.mode[0]);
+  double now = legendreStart(rows, 0, mu), before = 0., now2 = legendreStart(rows, 0, other), before2 = 0.;
+  even = odd = 0.;
+  for (int j = 0; m + j < settings.streams; ++j) {
+    (j % 2 == 0 ? even : odd) += rows.norm[j] * rows.norm[j] * layers[index].scatter[m + j] * now * now2;
+    const double next = rows.up[j] * mu * now - rows.down[j] * before;
+    const double next2 = rows.up[j] * other * now2 - rows.down[j] * before2;
+    before = now;
+    now = next;
+    before2 = now2;
+    now2 = next2;
+  }
 }
 
 // The ground and what arrives from outside, as hats: sqrt(w mu) times radiance.
@@ -261,7 +314,15 @@ void Solver::State::solveBundle(const BasisRows& rows, StackRows& stack_rows, bo
   pathOf(rows).solve(rows, stack_rows);
 }
 
-double Solver::State::leafView(const BasisRows& rows, std::size_t index, double mu, double* even, double* odd) const {
+double Solver::State::nodeView(const BasisRows& rows, std::size_t index, double mu, double* even, double* odd) const {
+  if (!layers[index].leaves) {
+    for (int i = 0; i < n; ++i) {
+      directionKernel(rows, index, mu, ordinates->mu()[i], even[i], odd[i]);
+      even[i] *= std::sqrt(ordinates->weight()[i]);
+      odd[i] *= std::sqrt(ordinates->weight()[i]);
+    }
+    return 1.;
+  }
   const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
   const LeafKernel& scattering = tables[index]->intoViews(static_cast<int>(rows.mode[0]));
   std::vector<double> all_even(scattering.modulus.size()), all_odd(scattering.modulus.size());

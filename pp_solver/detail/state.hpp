@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "pp_solver/detail/dense_modes.hpp"
 #include "pp_solver/detail/kernel.hpp"
 #include "pp_solver/detail/leaf_layer.hpp"
 #include "pp_solver/detail/scaled_layer.hpp"
@@ -63,7 +64,13 @@ struct Solver::State {
   double scaledBeam(std::size_t index, double depth_in_layer = 0.) const;
   double trueBeam(double depth_below_top) const;
 
-  std::size_t layerAt(double depth_below_top) const;
+  // The layer at a depth, and the depth within it. The sum of all thicknesses, or what misses it by rounding, is the
+  // bottom of the last layer.
+  struct Place {
+    std::size_t layer;
+    double inside;
+  };
+  Place placeAt(double depth_below_top) const;
 
   // Finds or makes the tables of a layer of leaves, and G of the beam.
   void prepareLeaves(std::size_t index);
@@ -71,9 +78,9 @@ struct Solver::State {
   // Extinction per scaled depth of light along mu, times mu: 1 for particles, G(mu) for leaves.
   double projectionOf(std::size_t index, double mu) const;
 
-  // How light along mu is received by a layer of leaves, rows over the nodes; returns what the kernel's answer is to be
-  // multiplied with.
-  double leafView(const detail::BasisRows& rows, std::size_t index, double mu, double* even, double* odd) const;
+  // How light along mu is received by a layer whose modes are given at the nodes, rows over these; returns what the
+  // kernel's answer is to be multiplied with.
+  double nodeView(const detail::BasisRows& rows, std::size_t index, double mu, double* even, double* odd) const;
 
   // Source of the beam's first scattering into mu at the layer's top, downward and upward, in azimuth mode `lane`.
   void beamSource(const detail::BasisRows& rows, int lane, std::size_t index, double mu, double& down,
@@ -85,6 +92,9 @@ struct Solver::State {
 
  private:
   void fillLayer(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, bool sine);
+  void fillDense(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, double amplitude);
+  void directionKernel(const detail::BasisRows& rows, std::size_t index, double mu, double other, double& even,
+                       double& odd) const;
   void fillGround(const detail::BasisRows& basis_rows, detail::StackRows& rows, bool sine);
 };
 
