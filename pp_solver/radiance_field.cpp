@@ -245,8 +245,8 @@ void Tracer::addModes(bool sine) {
   }
 }
 
-// (P13) Share of the beam's light, per scaled depth along the view, that one scattering turns into it [1/sr]: by the whole
-// phase function, in the scaled medium (TMS of Nakajima & Tanaka 1988).
+// (P13) Share of the beam's light, per scaled depth along the view, that one scattering turns into it [1/sr]: by the
+// whole phase function, in the scaled medium (TMS of Nakajima & Tanaka 1988).
 double Tracer::phaseInto(std::size_t p, double mu, double azimuth) const {
   if (const auto* leaves = std::get_if<LeafScattering>(&s_.problem.layers[p].medium))
     return leafScattering(*leaves, mu, s_.mu0, azimuth) / s_.projectionOf(p, std::abs(mu));
@@ -315,8 +315,8 @@ Tracer::Peak Tracer::peakAbove(double depth) const {
   return peak;
 }
 
-// (P13) The second order of the peak that delta-M takes for unscattered light, near the beam's direction (IMS of Nakajima &
-// Tanaka 1988): the scaled beam holds all of it in one direction, in truth it is spread.
+// (P13) The second order of the peak that delta-M takes for unscattered light, near the beam's direction (IMS of
+// Nakajima & Tanaka 1988): the scaled beam holds all of it in one direction, in truth it is spread.
 void Tracer::addAureole() {
   if (s_.beam == 0.) return;
   const double phi0 = s_.problem.beam->azimuth, sine0 = std::sqrt((1. - s_.mu0) * (1. + s_.mu0));

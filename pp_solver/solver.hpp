@@ -44,11 +44,11 @@ class Solver {
   void solve(const Problem& problem);
 
   // What follows speaks of the problem solved last.
-  double incident() const;       // flux that arrives at the top, and from below [flux]; without any, shares are not defined
+  double incident() const;  // flux that arrives at the top, and from below [flux]; without any, shares are not defined
   double reflectance() const;    // flux up at the top over `incident` [1]
   double transmittance() const;  // flux down at the bottom, direct beam included, over `incident` [1]; 0 if infinite
   double direct() const;         // the beam's share of transmittance [1]
-  double absorptance() const;    // absorbed by the layers less what they emit, over `incident`, by the mean intensity [1]
+  double absorptance() const;  // absorbed by the layers less what they emit, over `incident`, by the mean intensity [1]
 
   Fluxes fluxes(double depth) const;                    // depth in [0, total thickness]
   double absorbed(double depth0, double depth1) const;  // net flux at depth0 less that at depth1 [flux]

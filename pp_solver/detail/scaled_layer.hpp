@@ -15,10 +15,10 @@ struct ScaledLayer {
   double top = 0.;        // true depth of the layer's top
   double beam_path = 0.;  // scaled extinction above the layer, for a vertical path of the beam
   double true_thickness = 0.;
-  double loss = 1.;                  // 1 - scaled omega, exact near 0 [1]
-  double albedo = 0.;                // true omega [1]
-  double projection = 1.;            // G of the beam's direction; 1 for particles
-  std::vector<double> scatter;       // scaled omega chi_l, l < N
+  double loss = 1.;             // 1 - scaled omega, exact near 0 [1]
+  double albedo = 0.;           // true omega [1]
+  double projection = 1.;       // G of the beam's direction; 1 for particles
+  std::vector<double> scatter;  // scaled omega chi_l, l < N
   std::vector<double> moments;  // chi_l of the true phase function, l <= N
 };
 

@@ -155,7 +155,6 @@ void Solver::State::fillDense(const BasisRows& rows, LayerRows& row, std::size_t
   denseModes(rows, row, medium, weight);
 }
 
-// E and O of particles between two directions, from N moments.
 void Solver::State::directionKernel(const BasisRows& rows, std::size_t index, double mu, double other, double& even,
                                     double& odd) const {
   const int m = static_cast<int>(rows.mode[0]);

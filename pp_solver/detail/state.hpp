@@ -86,6 +86,10 @@ struct Solver::State {
   void beamSource(const detail::BasisRows& rows, int lane, std::size_t index, double mu, double& down,
                   double& up) const;
 
+  // E and O of particles between two directions, from N moments.
+  void directionKernel(const detail::BasisRows& rows, std::size_t index, double mu, double other, double& even,
+                       double& odd) const;
+
   // Radiance that leaves the ground along mu, but for what `below` sends by itself.
   double groundRadiance(const detail::BasisRows& rows, const detail::StackRows& stack_rows, int lane, double mu,
                         bool sine) const;
@@ -93,8 +97,6 @@ struct Solver::State {
  private:
   void fillLayer(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, bool sine);
   void fillDense(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, double amplitude);
-  void directionKernel(const detail::BasisRows& rows, std::size_t index, double mu, double other, double& even,
-                       double& odd) const;
   void fillGround(const detail::BasisRows& basis_rows, detail::StackRows& rows, bool sine);
 };
 
