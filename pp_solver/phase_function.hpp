@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 namespace sunfleck::pp {
@@ -25,7 +26,9 @@ class PhaseFunction {
   static PhaseFunction sampled(std::vector<double> cosines, std::vector<double> values);
 
   double operator()(double cosine) const;  // p [1/sr]
-  double moment(int order) const;          // chi_l [1]
+
+  // chi_l [1] for l = 0 .. moments.size() - 1
+  void moments(std::span<double> moments) const;
 
   // The first order from which all moments are 0; a large number where that never happens.
   int orders() const;

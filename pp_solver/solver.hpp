@@ -59,13 +59,14 @@ class Solver {
   double radiance(double depth, double mu, double phi);
   int azimuthModes() const;  // how many the last radiances() took
 
-  // The largest deviation, over nodes, depths and the azimuth modes 0 .. modes - 1, of mu dI/dz from the right side of
-  // the transfer equation, over the largest radiance: the solution put back into its equation, by derivatives that are
-  // not those of the solution's own formulas.
+  // The solution put back into its equation: the largest deviation of mu dI/dz from -G I + source, averaged over a step
+  // in which no light decays by more than a quarter, over the ordinates, nine depths of each layer and the azimuth modes
+  // 0 .. modes - 1, in units of the largest radiance or source there. The source is summed anew from the radiances.
   double residual(int modes = 1);
 
- private:
   struct State;
+
+ private:
   std::unique_ptr<State> state_;
 };
 

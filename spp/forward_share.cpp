@@ -33,4 +33,14 @@ double forwardShare(double asymmetry, double mu0) {
   return std::clamp(shareAbove(g, sine) + between, 0., 1.);
 }
 
+// The mean is 1 - (integral of Theta p sin Theta dTheta); by parts it is a complete elliptic integral, K(g). Near g = 0
+// its two terms cancel, and the series takes over, whose next term is below 1e-15.
+double meanForwardShare(double asymmetry) {
+  const double g = asymmetry;
+  if (std::abs(g) < 0.01) return 0.5 + g * (3. / 8. + g * g * (7. / 128. + g * g * 11. / 512.));
+  const double pi = std::numbers::pi;
+  const double backward = (1. - g * g) / (2. * pi * g) * (2. * std::comp_ellint_1(std::abs(g)) - pi / (1. + g));
+  return std::clamp(1. - backward, 0., 1.);
+}
+
 }  // namespace sunfleck::spp

@@ -8,4 +8,8 @@ namespace sunfleck::spp {
 //   mu0        [1], (0, 1]
 double forwardShare(double asymmetry, double mu0);
 
+// (S11) The same share of light that comes in equally from all directions of the half before: the mean of
+// forwardShare(g, mu) over mu. In [0, 1], to 1e-13.
+double meanForwardShare(double asymmetry);
+
 }  // namespace sunfleck::spp

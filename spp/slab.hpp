@@ -23,10 +23,12 @@ using std::abs;
 
 #define SHARED_FN inline
 #include "spp/spp_formulas.glsl"
+#include "spp/stream_formulas.glsl"
 
 namespace precise {
 using Number = double;
 #include "spp/spp_formulas.glsl"
+#include "spp/stream_formulas.glsl"
 }  // namespace precise
 #undef SHARED_FN
 

@@ -58,8 +58,8 @@ constexpr SlabModel kModelOf{
     .gives_radiance = true,
     .solve = [](const SlabSetup& setup) -> std::unique_ptr<SlabSolution> { return std::make_unique<Solution>(setup); }};
 
-// (R8) Check that the weights of the directions are those of the sphere: they integrate 1, mu^2 and mu^20 exactly.
-TEST(R8_SlabTableGrid, IntegratesOverTheSphere) {
+// (R9) Check that the weights of the directions are those of the sphere: they integrate 1, mu^2 and mu^20 exactly.
+TEST(R9_SlabTableGrid, IntegratesOverTheSphere) {
   const SlabTableGrid grid = slabTableGrid(10.);
   ASSERT_EQ(grid.mus.size(), grid.weights.size());
   for (const int power : {0, 2, 20}) {
@@ -73,18 +73,18 @@ TEST(R8_SlabTableGrid, IntegratesOverTheSphere) {
   EXPECT_EQ(slabTableGrid(std::numeric_limits<double>::infinity()).depths.back(), 10.);
 }
 
-// (R8) Check that a model that is off by one constant everywhere has that constant as its error, and the exact one
+// (R9) Check that a model that is off by one constant everywhere has that constant as its error, and the exact one
 // none.
-TEST(R8_SlabRadianceErrors, AreThoseOfAConstantOffset) {
+TEST(R9_SlabRadianceErrors, AreThoseOfAConstantOffset) {
   const std::vector<const SlabModel*> models{&kModelOf<OffsetSlab>, &exactSlabModel()};
   const auto errors = slabRadianceErrors(models, 0.5, 0.9, 5., 4);
   EXPECT_NEAR(errors[0], kOffset, 1e-12 * kOffset);  // roundings of a sum of squares that are all alike
   EXPECT_EQ(errors[1], 0.);
 }
 
-// (R8) Check SPP's error for isotropic scatterers in a slab of thickness 10, RMS over the five albedos, against another
+// (R9) Check SPP's error for isotropic scatterers in a slab of thickness 10, RMS over the five albedos, against another
 // study's 2.81 % (its own exact solver; it does not print its angles and depths, hence 2 % of leave).
-TEST(R8_SlabRadianceErrors, OfSppAreThoseOfAnotherStudy) {
+TEST(R9_SlabRadianceErrors, OfSppAreThoseOfAnotherStudy) {
   const std::vector<const SlabModel*> models{findSlabModel("spp")};
   double squares = 0.;
   for (const double albedo : {0.5, 0.7, 0.9, 0.95, 0.99})

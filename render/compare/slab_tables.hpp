@@ -28,7 +28,7 @@ struct SlabTableGrid {
 };
 SlabTableGrid slabTableGrid(double thickness);
 
-// (R8) How far a model's diffuse radiance is from the exact one, relative to the power F that arrives on a plane facing
+// (R9) How far a model's diffuse radiance is from the exact one, relative to the power F that arrives on a plane facing
 // the beam: sqrt(mean over beams and depths of 1/(4 pi) integral of (I_model - I_exact)^2 ds) / F  [fraction].
 //   models  each with a radiance; result[i] is that of models[i]
 //   g, albedo, thickness  of the slab; exact solution by `streams` directions

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "pp_solver/detail/kernel.hpp"
+#include "pp_solver/detail/leaf_layer.hpp"
+#include "pp_solver/detail/scaled_layer.hpp"
+#include "pp_solver/solver.hpp"
+
+namespace sunfleck::pp {
+
+// What a Solver holds. A `bundle` is what the kernel solves at once: one azimuth mode, or as many as a vector has lanes.
+struct Solver::State {
+  Settings settings;
+  int n;  // streams / 2
+  std::shared_ptr<const Ordinates> ordinates;
+  const detail::Kernel& kernel = detail::kernel();
+
+  Problem problem;
+  std::vector<detail::ScaledLayer> layers;
+  bool solved = false, any_leaves = false;
+  double depth = 0.;  // of the whole stack, true
+  double mu0 = 1., beam = 0.;  // irradiance normal to the beam
+  int modes_used = 0;
+
+  // What the hot spot changes in the fluxes, over the flux that arrives (P11).
+  struct HotSpot {
+    double reflected = 0., transmitted = 0., absorbed = 0.;
+    double again = 1.;  // factor on the reflected light of higher orders
+  } hot_spot;
+  bool hasHotSpot() const;
+  void findHotSpot();
+
+  detail::BasisRows basis;  // of mode 0 alone
+  detail::StackRows stack;
+  detail::RowMemory memory;
+  double *u_row, *v_row;  // for fluxes at a depth
+
+  std::vector<std::unique_ptr<detail::LeafTables>> leaf_tables;  // of each distribution so far
+  std::vector<detail::LeafTables*> tables;                       // of each layer, or null
+
+  std::map<int, std::unique_ptr<detail::BasisRows>> bundles;  // by first mode
+  detail::StackRows bundle_stack;
+
+  explicit State(const Settings& s);
+
+  const detail::BasisRows& bundle(int first_mode);
+  const detail::KernelPath& pathOf(const detail::BasisRows& rows) const {
+    return rows.lanes > 1 ? kernel.wide : kernel.single;
+  }
+
+  // Fills `rows` with the modes of `basis_rows` and solves them. sine: the part of the light that goes with
+  // sin m (phi - phi0) instead of cos.
+  void solveBundle(const detail::BasisRows& basis_rows, detail::StackRows& rows, bool sine);
+
+  // Azimuth mode m of diffuse light that arrives along mu, phi counted from the beam's azimuth.
+  double skyMode(const Sky& sky, int m, double mu, bool sine) const;
+
+  // Attenuation of the beam as the scaled medium has it, at the top of layer `index` or at a depth within it.
+  double scaledBeam(std::size_t index, double depth_in_layer = 0.) const;
+  double trueBeam(double depth_below_top) const;
+
+  std::size_t layerAt(double depth_below_top) const;
+
+  // Finds or makes the tables of a layer of leaves, and G of the beam.
+  void prepareLeaves(std::size_t index);
+
+  // Extinction per scaled depth of light along mu, times mu: 1 for particles, G(mu) for leaves.
+  double projectionOf(std::size_t index, double mu) const;
+
+  // How light along mu is received by a layer of leaves, rows over the nodes; returns what the kernel's answer is to be
+  // multiplied with.
+  double leafView(const detail::BasisRows& rows, std::size_t index, double mu, double* even, double* odd) const;
+
+  // Source of the beam's first scattering into mu at the layer's top, downward and upward, in azimuth mode `lane`.
+  void beamSource(const detail::BasisRows& rows, int lane, std::size_t index, double mu, double& down, double& up) const;
+
+  // Radiance that leaves the ground along mu, but for what `below` sends by itself.
+  double groundRadiance(const detail::BasisRows& rows, const detail::StackRows& stack_rows, int lane, double mu,
+                        bool sine) const;
+
+ private:
+  void fillLayer(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, bool sine);
+  void fillGround(const detail::BasisRows& basis_rows, detail::StackRows& rows, bool sine);
+};
+
+// Lambda_m^m(mu) of each lane.
+double legendreStart(const detail::BasisRows& basis, int lane, double mu);
+
+}  // namespace sunfleck::pp

@@ -1,0 +1,313 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/require.hpp"
+#include "pp_solver/detail/state.hpp"
+#include "pp_solver/hot_spot.hpp"
+
+namespace sunfleck::pp {
+namespace {
+
+using detail::BasisRows;
+using detail::LayerRows;
+using detail::ScaledLayer;
+using detail::StackRows;
+
+constexpr double kPi = std::numbers::pi;
+
+// (e^-pz - e^-qz) / (q - p)
+double difference(double p, double q, double z) {
+  const double x = std::abs(q - p) * z, low = std::min(p, q);
+  return std::exp(-low * z) * (x == 0. ? z : -std::expm1(-x) / std::abs(q - p));
+}
+
+// Light of the beam scattered once, the source 1 at the layer's top and falling as e^-rate z: what arrives at depth z
+// along a view whose extinction per depth is m.
+double onceDown(double rate, double m, double z) { return m * difference(rate, m, z); }
+double onceUp(double rate, double m, double z, double w) {
+  return m * (std::exp(-rate * z) - (std::isinf(w) ? 0. : std::exp(-m * (w - z) - rate * w))) / (m + rate);
+}
+
+// Where light is asked for: within each layer, the depths and what they are the answer to.
+struct Levels {
+  std::vector<double> z;         // scaled, from the layer's top; the first is 0, the last the bottom of a finite layer
+  std::vector<int> output;       // index of the depth asked for, or -1
+};
+
+// Diffuse light that follows one direction, down and up, of each lane.
+class Tracer {
+ public:
+  Tracer(Solver::State& state, std::span<const double> depths, std::span<const double> mus,
+         std::span<const double> phis, std::span<double> result)
+      : s_(state), depths_(depths), mus_(mus), phis_(phis), result_(result) {
+    for (const double mu : mus) cosines_.push_back(std::abs(mu));
+    std::sort(cosines_.begin(), cosines_.end());
+    cosines_.erase(std::unique(cosines_.begin(), cosines_.end()), cosines_.end());
+    levels_.resize(s_.layers.size());
+    for (std::size_t p = 0; p < s_.layers.size(); ++p) levels_[p] = {{0.}, {-1}};
+    for (std::size_t d = 0; d < depths.size(); ++d) {
+      const std::size_t p = s_.layerAt(depths[d]);
+      levels_[p].z.push_back(std::min((depths[d] - s_.layers[p].top) * s_.layers[p].scale, s_.layers[p].thickness));
+      levels_[p].output.push_back(static_cast<int>(d));
+    }
+    for (std::size_t p = 0; p < s_.layers.size(); ++p)
+      if (!std::isinf(s_.layers[p].thickness)) {
+        levels_[p].z.push_back(s_.layers[p].thickness);
+        levels_[p].output.push_back(-1);
+      }
+    for (std::size_t p = 0; p < s_.layers.size(); ++p)
+      if (s_.layers[p].leaves) s_.tables[p]->setViews(cosines_);
+    std::fill(result.begin(), result.end(), 0.);
+  }
+
+  void addModes(bool sine);
+  void addWhole();    // what needs no azimuth series: sky seen directly, first scattering
+  void addHotSpot();  // at the top, upward
+
+ private:
+  // Extinction per scaled depth along the view, over |mu|: with corrections that of the true medium.
+  double viewRate(std::size_t p, double mu) const {
+    if (s_.layers[p].leaves) return s_.projectionOf(p, mu) / mu;
+    return 1. / (mu * (s_.settings.corrections ? s_.layers[p].scale : 1.));
+  }
+  double phaseInto(std::size_t p, double mu, double azimuth) const;
+  void addBundle(const BasisRows& rows, bool sine, std::vector<double>& added);
+  void followDirection(const BasisRows& rows, StackRows& stack, double mu, bool sine, double* down, double* up);
+  void viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t p, double mu, bool sine, double* down, double* up);
+  int modesWithLight() const;
+
+  Solver::State& s_;
+  std::span<const double> depths_, mus_, phis_;
+  std::span<double> result_;
+  std::vector<double> cosines_;  // |mu|, each once
+  std::vector<Levels> levels_;
+  detail::RowMemory memory_;
+};
+
+int Tracer::modesWithLight() const {
+  const bool sky = std::holds_alternative<std::function<double(double, double)>>(s_.problem.above) ||
+                   std::holds_alternative<std::function<double(double, double)>>(s_.problem.below);
+  int modes = 1;
+  for (std::size_t p = 0; p < s_.layers.size(); ++p) {
+    if (s_.layers[p].leaves) {
+      modes = s_.settings.streams;
+    } else {
+      const auto& particles = std::get<Particles>(s_.problem.layers[p].medium);
+      if (particles.albedo > 0. && (s_.beam > 0. || sky)) modes = std::max(modes, particles.phase.orders());
+    }
+  }
+  if (s_.problem.ground.brdf) modes = std::max(modes, s_.problem.ground.brdf_modes);
+  return std::min(modes, s_.settings.streams);
+}
+
+// What one layer adds between its edge and each level, [level * lanes + lane].
+void Tracer::viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t p, double mu, bool sine, double* down,
+                              double* up) {
+  const int lanes = rows.lanes, streams = s_.settings.streams;
+  const ScaledLayer& layer = s_.layers[p];
+  const auto& path = s_.pathOf(rows);
+  const auto count = static_cast<std::size_t>(levels_[p].z.size());
+  const double m = viewRate(p, mu);
+  double *even = memory_.take(rows.row), *odd = memory_.take(rows.row), *rate = memory_.take(lanes);
+  double *depth = memory_.take(count * lanes), *scratch = memory_.take(2 * rows.row);
+  double share = 1.;
+  if (layer.leaves) {
+    share = s_.leafView(rows, p, mu, even, odd);
+  } else {
+    double *scatter = memory_.take(static_cast<std::size_t>(streams) * lanes), *cosine = memory_.take(lanes),
+           *first = memory_.take(lanes);
+    const std::vector<double>& moments = s_.settings.corrections ? layer.true_scatter : layer.scatter;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int mode = static_cast<int>(rows.mode[lane]);
+      for (int j = 0; mode + j < streams; ++j) scatter[j * lanes + lane] = moments[mode + j];
+      cosine[lane] = mu;
+      first[lane] = legendreStart(rows, lane, mu);
+    }
+    path.scatterRows(rows, scatter, cosine, first, even, odd);
+  }
+  std::fill(rate, rate + lanes, m);
+  for (std::size_t i = 0; i < count; ++i) std::fill_n(depth + i * lanes, lanes, levels_[p].z[i]);
+  path.viewLayer(rows, row, {even, odd, rate, static_cast<int>(count), depth, down, up}, scratch);
+  for (std::size_t i = 0; i < count * lanes; ++i) {
+    down[i] *= share;
+    up[i] *= share;
+  }
+  if (s_.settings.corrections || sine || s_.beam == 0.) return;
+  for (int lane = 0; lane < lanes; ++lane) {
+    double same, opposite;  // source of the beam's first scattering into mu, downward and upward
+    s_.beamSource(rows, lane, p, mu, same, opposite);
+    for (std::size_t i = 0; i < count; ++i) {
+      down[i * lanes + lane] += same * onceDown(row.rate[lane], m, levels_[p].z[i]);
+      up[i * lanes + lane] += opposite * onceUp(row.rate[lane], m, levels_[p].z[i], layer.thickness);
+    }
+  }
+}
+
+// The light of one direction at each depth asked for, [output * lanes + lane].
+void Tracer::followDirection(const BasisRows& rows, StackRows& stack, double mu, bool sine, double* down, double* up) {
+  const int lanes = rows.lanes;
+  const std::size_t layers = s_.layers.size();
+  std::vector<double*> down_in(layers), up_in(layers);
+  for (std::size_t p = 0; p < layers; ++p) {
+    down_in[p] = memory_.take(levels_[p].z.size() * lanes);
+    up_in[p] = memory_.take(levels_[p].z.size() * lanes);
+    viewThroughLayer(rows, stack.layer[p], p, mu, sine, down_in[p], up_in[p]);
+  }
+  for (int lane = 0; lane < lanes; ++lane) {
+    double carried = 0.;
+    for (std::size_t p = 0; p < layers; ++p) {
+      const LayerRows& row = stack.layer[p];
+      const double m = viewRate(p, mu), w = s_.layers[p].thickness;
+      const double b0 = row.planck_top[lane], bw = row.planck_bottom[lane], drift = row.planck_drift[lane] * mu;
+      const double entering = carried - (b0 + drift);
+      for (std::size_t i = 0; i < levels_[p].z.size(); ++i) {
+        const double z = levels_[p].z[i], emitted = b0 + (std::isinf(w) ? 0. : (bw - b0) * z / w) + drift;
+        carried = entering * std::exp(-m * z) + down_in[p][i * lanes + lane] + emitted;
+        if (levels_[p].output[i] >= 0) down[levels_[p].output[i] * lanes + lane] = carried;
+      }
+    }
+    carried = s_.groundRadiance(rows, stack, lane, mu, sine);
+    for (std::size_t p = layers; p-- > 0;) {
+      const LayerRows& row = stack.layer[p];
+      const double m = viewRate(p, mu), w = s_.layers[p].thickness;
+      const double b0 = row.planck_top[lane], bw = row.planck_bottom[lane], drift = row.planck_drift[lane] * mu;
+      const double entering = std::isinf(w) ? 0. : carried - (bw - drift);
+      for (std::size_t i = levels_[p].z.size(); i-- > 0;) {
+        const double z = levels_[p].z[i], emitted = b0 + (std::isinf(w) ? 0. : (bw - b0) * z / w) - drift;
+        carried = (std::isinf(w) ? 0. : entering * std::exp(-m * (w - z))) + up_in[p][i * lanes + lane] + emitted;
+        if (levels_[p].output[i] >= 0) up[levels_[p].output[i] * lanes + lane] = carried;
+      }
+    }
+  }
+}
+
+void Tracer::addBundle(const BasisRows& rows, bool sine, std::vector<double>& added) {
+  s_.solveBundle(rows, s_.bundle_stack, sine);
+  const int lanes = rows.lanes;
+  const double phi0 = s_.problem.beam ? s_.problem.beam->azimuth : 0.;
+  for (const double cosine : cosines_) {
+    memory_.clear();
+    double *down = memory_.take(depths_.size() * lanes), *up = memory_.take(depths_.size() * lanes);
+    followDirection(rows, s_.bundle_stack, cosine, sine, down, up);
+    for (std::size_t i = 0; i < mus_.size(); ++i) {
+      if (std::abs(mus_[i]) != cosine) continue;
+      const double* value = mus_[i] > 0. ? down : up;
+      for (std::size_t d = 0; d < depths_.size(); ++d)
+        for (int lane = 0; lane < lanes; ++lane) {
+          const double m = rows.mode[lane], size = value[d * lanes + lane];
+          if (m >= s_.settings.streams) continue;
+          added[lane] = std::max(added[lane], std::abs(size));
+          for (std::size_t j = 0; j < phis_.size(); ++j) {
+            const double angle = m * (phis_[j] - phi0);
+            result_[(d * mus_.size() + i) * phis_.size() + j] += size * (sine ? std::sin(angle) : std::cos(angle));
+          }
+        }
+    }
+  }
+}
+
+void Tracer::addModes(bool sine) {
+  const int modes = modesWithLight();
+  int small = 0;
+  for (int first = sine ? 1 : 0; first < modes;) {
+    const BasisRows& rows = s_.bundle(first);
+    std::vector<double> added(rows.lanes, 0.);
+    addBundle(rows, sine, added);
+    double largest = 0.;
+    for (const double value : result_) largest = std::max(largest, std::abs(value));
+    for (int lane = 0; lane < rows.lanes && first + lane < modes; ++lane)
+      small = added[lane] <= s_.settings.azimuth_tolerance * largest ? small + 1 : 0;
+    first += rows.lanes;
+    s_.modes_used = std::max(s_.modes_used, std::min(first, modes));
+    if (small >= 2) break;
+  }
+}
+
+// Share of the beam's light, per depth along the view, that one scattering turns into it [1/sr].
+double Tracer::phaseInto(std::size_t p, double mu, double azimuth) const {
+  if (const auto* leaves = std::get_if<LeafScattering>(&s_.problem.layers[p].medium))
+    return leafScattering(*leaves, mu, s_.mu0, azimuth) / s_.projectionOf(p, std::abs(mu));
+  const double sines = std::sqrt((1. - s_.mu0) * (1. + s_.mu0) * (1. - mu) * (1. + mu));
+  const double cosine = std::clamp(sines * std::cos(azimuth) + s_.mu0 * mu, -1., 1.);
+  const auto& particles = std::get<Particles>(s_.problem.layers[p].medium);
+  return particles.albedo * particles.phase(cosine);
+}
+
+void Tracer::addWhole() {
+  const double phi0 = s_.problem.beam ? s_.problem.beam->azimuth : 0.;
+  const auto skyAlong = [](const Sky& sky, double mu, double phi) {
+    if (const double* radiance = std::get_if<double>(&sky)) return *radiance;
+    const auto& function = std::get<1>(sky);
+    return function ? function(mu, phi) : 0.;
+  };
+  for (std::size_t i = 0; i < mus_.size(); ++i)
+    for (std::size_t j = 0; j < phis_.size(); ++j) {
+      const bool downward = mus_[i] > 0.;
+      const double mu = std::abs(mus_[i]);
+      const auto result = [&](int output) -> double& {
+        return result_[(static_cast<std::size_t>(output) * mus_.size() + i) * phis_.size() + j];
+      };
+      double carried = downward ? skyAlong(s_.problem.above, mu, phis_[j])
+                                : (std::isinf(s_.depth) ? 0. : skyAlong(s_.problem.below, mu, phis_[j]));
+      for (std::size_t step = 0; step < s_.layers.size(); ++step) {
+        const std::size_t p = downward ? step : s_.layers.size() - 1 - step;
+        const ScaledLayer& layer = s_.layers[p];
+        const double m = viewRate(p, mu), w = layer.thickness, rate = layer.projection / s_.mu0;
+        double source = 0.;
+        if (s_.settings.corrections && s_.beam > 0.)
+          source = s_.beam * s_.scaledBeam(p) * phaseInto(p, mus_[i], phis_[j] - phi0);
+        const double entering = carried;
+        const auto at = [&](double z) {
+          if (downward) return entering * std::exp(-m * z) + source * onceDown(rate, m, z);
+          return (std::isinf(w) ? 0. : entering * std::exp(-m * (w - z))) + source * onceUp(rate, m, z, w);
+        };
+        for (std::size_t k = 0; k < levels_[p].z.size(); ++k)
+          if (levels_[p].output[k] >= 0) result(levels_[p].output[k]) += at(levels_[p].z[k]);
+        carried = downward ? (std::isinf(w) ? 0. : at(w)) : at(0.);
+      }
+    }
+}
+
+// (P22), and what (P11) takes from the light of higher orders, from each direction alike.
+void Tracer::addHotSpot() {
+  const auto& leaves = std::get<LeafScattering>(s_.problem.layers[0].medium);
+  const double w = s_.layers[0].thickness, phi0 = s_.problem.beam->azimuth, albedo = s_.problem.ground.albedo;
+  for (std::size_t i = 0; i < mus_.size(); ++i)
+    for (std::size_t j = 0; j < phis_.size(); ++j) {
+      if (mus_[i] > 0.) continue;
+      const SunAndView at{.thickness = w, .mu0 = s_.mu0, .mu = -mus_[i], .azimuth = phis_[j] - phi0};
+      const ScatteredOnce once = scatteredOnceTurbid(leaves, at), excess = hotSpotExcess(leaves, at);
+      const double ground = albedo / kPi * s_.mu0;
+      for (std::size_t d = 0; d < depths_.size(); ++d) {
+        if (depths_[d] > 0.) continue;
+        double& value = result_[(d * mus_.size() + i) * phis_.size() + j];
+        const double first = s_.beam * (once.leaves + ground * once.gap);
+        value = first + s_.beam * (excess.leaves + ground * excess.gap) + s_.hot_spot.again * (value - first);
+      }
+    }
+}
+
+}  // namespace
+
+void Solver::radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
+                       std::span<double> result) {
+  State& s = *state_;
+  require(s.solved, "problems solved", 0, "one before radiances are asked for");
+  require(result.size() == depths.size() * mus.size() * phis.size(), "size of result", result.size(),
+          "depths x mus x phis");
+  for (const double depth : depths)
+    require(depth >= 0. && depth <= s.depth && !std::isinf(depth), "depth", depth, "finite and within the layers");
+  for (const double mu : mus) require(mu != 0. && std::abs(mu) <= 1., "mu", mu, "in [-1, 1] and not 0");
+  for (const double phi : phis) require(std::isfinite(phi), "phi", phi, "finite");
+  s.modes_used = 0;
+  Tracer tracer(s, depths, mus, phis, result);
+  tracer.addModes(false);
+  if (std::holds_alternative<std::function<double(double, double)>>(s.problem.above) ||
+      std::holds_alternative<std::function<double(double, double)>>(s.problem.below))
+    tracer.addModes(true);
+  tracer.addWhole();
+  if (s.hasHotSpot()) tracer.addHotSpot();
+}
+
+}  // namespace sunfleck::pp

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <type_traits>
+#include <vector>
+
+#include "spp/slab.hpp"
+#include "spp/stream_constants.hpp"
+
+namespace sunfleck::spp {
+
+// Light at one depth for a beam of irradiance 1 on a plane that faces it. Powers are radiance integrated over a half of
+// the sphere, fluxes pass through a horizontal plane; downward ones include the direct light (flux: mu0 times it).
+template <typename Real>
+struct SlabLight {
+  Real power_down, power_up;  // P+, P- [F]
+  Real flux_down, flux_up;    // [F]
+  Real direct;                // F e^(-z / mu0) [F]
+};
+
+// A closed form (SPP, two-stream, n-stream) in a homogeneous slab on a black ground; Real is float or double. Depths
+// are true optical depths; what lies outside the slab counts as its face. Nothing it returns is negative: a series of
+// moments may be, and is then cut to 0.
+template <typename Real>
+class StreamSlab {
+ public:
+  // thickness  w [1], > 0, may be infinite. Throws InvalidInput for another.
+  StreamSlab(StreamConstants constants, Real thickness);
+
+  Real reflectance() const;    // flux up at the lit face over the flux that arrives [1]
+  Real transmittance() const;  // flux down at the other face, direct light included, over it [1]
+
+  SlabLight<Real> light(Real depth) const;
+
+  // Direction in which light travels: mu > 0 down, azimuth from that of the beam [rad]. Made once for many depths.
+  struct View {
+    Real cosine = 1;
+    Real rate = 1;                                // 1 / (depth scale |mu|)
+    Real beam_source = 0;                         // omega p(s, s0) [1/sr]
+    std::vector<Real> seen_sum, seen_difference;  // alpha, beta of every mode of every order, cos(m phi) included
+  };
+  View view(double mu, double azimuth) const;  // mu [-1, 1], not 0
+
+  // (S10) Diffuse radiance [1/sr]: light scattered once exactly, the rest from the model's field by the true phase
+  // function, integrated along the line of sight in the true medium.
+  Real refinedRadiance(Real depth, const View& view) const;
+
+  // Diffuse radiance of a stream of the model's own field [1/sr], order m: the coefficient of cos(m phi).
+  Real streamRadiance(Real depth, int stream, bool downward, int order = 0) const;
+
+ private:
+  static constexpr bool kSingle = std::is_same_v<Real, float>;
+  using Mode = std::conditional_t<kSingle, SlabMode, precise::SlabMode>;
+
+  void addModes(const StreamModes& modes);
+  Real scaledDepth(Real depth) const;
+
+  StreamConstants constants_;
+  Real thickness_;  // scaled
+  Real depth_scale_, beam_rate_, mu0_;
+  std::vector<Mode> modes_;                                                      // of order 0, then of order 1 ...
+  std::vector<Real> power_sum_, power_difference_, flux_sum_, flux_difference_;  // of the modes of order 0
+};
+
+extern template class StreamSlab<float>;
+extern template class StreamSlab<double>;
+
+}  // namespace sunfleck::spp
