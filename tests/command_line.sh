@@ -137,7 +137,7 @@ done
 refuses "must be pp" slab --model spp --sky 1
 refuses "must be pp" slab --model pp,spp --ground-albedo 0.5
 for leaves in none spherical:2 ellipsoidal ellipsoidal:0 ellipsoidal:x beta:57 beta:90,20 beta:57,0 beta:57,20,3 ""; do
-  refuses "leaves" slab --leaves "$leaves"
+  refuses "lea" slab --leaves "$leaves"
 done
 refuses "reflectance + transmittance" slab --leaves spherical --reflectance 0.6 --transmittance 0.5
 for value in -0.1 1.1 nan; do
@@ -227,7 +227,8 @@ does "g,omega,thickness,mu0,reflectance,transmittance,direct" slab --batch cases
 does "0,1,inf,1,1," slab --model spp --batch cases.csv
 "$program" slab --batch many.csv --streams 4 -o results.csv || fail "slab --batch: status $?"
 cut -d, -f1-4 results.csv | cmp -s - many.csv || fail "slab --batch: lines are lost or out of order"
-awk -F, 'NR > 1 && !(NF == 7 && $5 + 0 >= 0 && $6 + 0 >= $7 + 0 && $5 + $6 < 1.0000001) { exit 1 }' results.csv ||
+# With four streams the series of a backward peak may be negative somewhere: 1e-6 of the light in a thin slab.
+awk -F, 'NR > 1 && !(NF == 7 && $5 + 0 >= 0 && $6 + 1e-5 >= $7 + 0 && $5 + $6 < 1.0000001) { exit 1 }' results.csv ||
   fail "slab --batch: a line holds no fluxes"
 "$program" slab --batch many.csv --streams 4 --threads 1 | cmp -s - results.csv ||
   fail "slab --batch: the results depend on the number of threads or on where they go"
@@ -237,7 +238,7 @@ does "+0.5 , 5e-1,INF,1," slab --batch loose.csv
 does "0,0,1,.5,0,0.1353352832366" slab --model spp --batch loose.csv
 "$program" slab --batch many.csv --streams 4 >/dev/full 2>/dev/null && fail "slab --batch: lost output is no success"
 
-printf '1\n0.5\n0.25, 0.125\n' >moments.txt
+printf '1\n0.5\n0.2, 0.05\n' >moments.txt
 printf 'thickness,omega,g\n1,0.9,0.5\ninf,0.5,0\n' >layers.csv
 does "mean intensity" slab --depths 0,5
 does "phi 90 deg" slab --mu 1,-0.5 --phi 0,90

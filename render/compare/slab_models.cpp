@@ -6,6 +6,7 @@
 
 #include "spp/forward_share.hpp"
 #include "spp/slab.hpp"
+#include "spp/stream_slab.hpp"
 
 namespace sunfleck {
 namespace {
@@ -72,18 +73,78 @@ class SimplifiedSlab : public SlabSolution {
   double forward_share_;
 };
 
+// The closed forms made of modes, their radiance refined by one integral along the line of sight.
+class RefinedSlab : public SlabSolution {
+ public:
+  RefinedSlab(const SlabSetup& setup, spp::StreamConstants constants)
+      : case_(*setup.homogeneous), streams_(2 * constants.streams()), slab_(std::move(constants), case_.thickness) {}
+  SlabBudget budget() const override {
+    const double reflectance = slab_.reflectance(), transmittance = slab_.transmittance();
+    return {reflectance, transmittance, spp::precise::directPower(case_.thickness, case_.mu0),
+            std::max(0., 1. - reflectance - transmittance)};
+  }
+  double incident() const override { return case_.mu0; }
+  pp::Fluxes fluxes(double depth) const override {
+    const auto light = slab_.light(depth);
+    const double direct = case_.mu0 * light.direct;
+    return {.up = light.flux_up,
+            .down = std::max(0., light.flux_down - direct),
+            .direct = direct,
+            .mean_intensity = (light.power_down + light.power_up) / (4. * std::numbers::pi)};
+  }
+  void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
+                 std::span<double> result) override {
+    for (std::size_t i = 0; i < mus.size(); ++i)
+      for (std::size_t j = 0; j < phis.size(); ++j) {
+        const auto view = slab_.view(mus[i], phis[j]);
+        for (std::size_t d = 0; d < depths.size(); ++d)
+          result[(d * mus.size() + i) * phis.size() + j] = slab_.refinedRadiance(depths[d], view);
+      }
+  }
+  int streams() const override { return streams_; }
+
+ private:
+  pp::SlabCase case_;
+  int streams_;
+  spp::StreamSlab<double> slab_;
+};
+
+spp::BeamInMedium mediumOf(const SlabSetup& setup) {
+  return {
+      .asymmetry = setup.homogeneous->asymmetry, .albedo = setup.homogeneous->albedo, .mu0 = setup.homogeneous->mu0};
+}
+std::unique_ptr<SlabSolution> refinedSpp(const SlabSetup& setup) {
+  return std::make_unique<RefinedSlab>(setup, spp::sppConstants(mediumOf(setup)));
+}
+std::unique_ptr<SlabSolution> twoStream(const SlabSetup& setup) {
+  return std::make_unique<RefinedSlab>(setup, spp::twoStreamConstants(mediumOf(setup)));
+}
+// Two streams of each half and two orders of the azimuth: what a shader can afford.
+std::unique_ptr<SlabSolution> nStream(const SlabSetup& setup) {
+  return std::make_unique<RefinedSlab>(setup, spp::nStreamConstants(mediumOf(setup), 2, 2));
+}
+// The closest that the closed forms come at a bearable price: four streams of each half and all orders.
+std::unique_ptr<SlabSolution> fourStreams(const SlabSetup& setup) {
+  return std::make_unique<RefinedSlab>(setup, spp::nStreamConstants(mediumOf(setup), 4, 8));
+}
+
 template <typename Solution>
 std::unique_ptr<SlabSolution> solved(const SlabSetup& setup) {
   return std::make_unique<Solution>(setup);
 }
 
+constexpr SlabModel closedForm(std::string_view name, std::string_view label,
+                               std::unique_ptr<SlabSolution> (*solve)(const SlabSetup&)) {
+  return {.name = name, .label = label, .any_problem = false, .gives_radiance = true, .solve = solve};
+}
+
 constexpr std::array kModels{
     SlabModel{.name = "pp", .label = "exact", .any_problem = true, .gives_radiance = true, .solve = solved<ExactSlab>},
-    SlabModel{.name = "spp",
-              .label = "simplified plane-parallel",
-              .any_problem = false,
-              .gives_radiance = true,
-              .solve = solved<SimplifiedSlab>},
+    closedForm("spp", "simplified plane-parallel, unrefined", solved<SimplifiedSlab>),
+    closedForm("sppr", "simplified plane-parallel, refined", refinedSpp),
+    closedForm("twostream", "hemispheric two-stream, refined", twoStream),
+    closedForm("nstream", "two streams and azimuth orders, refined", nStream),
+    closedForm("best", "four streams, all azimuth orders, refined", fourStreams),
 };
 
 }  // namespace
