@@ -1,135 +1,67 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <nlohmann/json.hpp>
-#include <sstream>
+#include <memory>
 
 #include "apps/commands.hpp"
+#include "apps/slab_batch.hpp"
+#include "apps/slab_options.hpp"
+#include "apps/slab_output.hpp"
+#include "apps/slab_plot.hpp"
+#include "apps/terminal.hpp"
 #include "core/require.hpp"
-#include "spp/forward_share.hpp"
-#include "spp/slab.hpp"
+#include "core/whole_file.hpp"
 
 namespace sunfleck::apps {
 namespace {
 
-struct SlabOptions {
-  std::string model = "spp";
-  double albedo = 0.95;    // omega [1]
-  double asymmetry = 0.;   // g [1]
-  double thickness = 10.;  // [1]
-  double mu0 = 1.;         // [1]
-  std::vector<double> depths;
-  std::string batch;
-};
+constexpr int kEndedEarly = 1;
 
-struct SlabResult {
-  double reflectance, transmittance, direct;
-};
-
-struct Slab {
-  double asymmetry, albedo, thickness, mu0;
-  double forward_share = spp::forwardShare(asymmetry, mu0);
-
-  spp::precise::SlabPowers at(double depth) const {
-    return spp::precise::sppPowers(depth, thickness, mu0, albedo, forward_share);
-  }
-  // P+ and P- are powers relative to F = P+(0); the common factor mu0 of fluxes cancels.
-  SlabResult result() const {
-    return {.reflectance = at(0.).up,
-            .transmittance = at(thickness).down,
-            .direct = spp::precise::directPower(thickness, mu0)};
-  }
-};
-
-void check(double value, const std::string& where, const std::string& name, bool ok, const std::string& rule) {
-  require(ok, where + name, value, rule);
-}
-
-Slab checkedSlab(double asymmetry, double albedo, double thickness, double mu0, const std::string& where) {
-  check(asymmetry, where, "g", asymmetry > -1. && asymmetry < 1., "in (-1, 1)");
-  check(albedo, where, "omega", albedo >= 0. && albedo <= 1., "in [0, 1]");
-  check(thickness, where, "thickness", thickness > 0., "above 0; inf is allowed");
-  check(mu0, where, "mu0", mu0 > 0. && mu0 <= 1., "in (0, 1]");
-  return {.asymmetry = asymmetry, .albedo = albedo, .thickness = thickness, .mu0 = mu0};
-}
-
-constexpr const char* kBatchHeader = "g,omega,thickness,mu0";
-
-// One case a line; the answer of each is printed when all lines have been found right.
-int runBatch(const std::string& file) {
-  std::ifstream in(file);
-  if (!in || !std::filesystem::is_regular_file(file)) throw InvalidInput(file + ": cannot be read");
-  std::string line, output = std::string(kBatchHeader) + ",reflectance,transmittance,direct\n";
-  std::getline(in, line);
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  if (line != kBatchHeader) throw InvalidInput(file + ":1: \"" + line.substr(0, 80) + "\": must be " + kBatchHeader);
-  for (int number = 2; std::getline(in, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) continue;
-    const std::string where = fmt::format("{}:{}: ", file, number);
-    std::vector<double> values;
-    std::istringstream fields(line);
-    for (std::string field; std::getline(fields, field, ',');) {
-      char* end = nullptr;
-      values.push_back(std::strtod(field.c_str(), &end));
-      if (field.empty() || *end != '\0') throw InvalidInput(where + "\"" + field + "\": must be a number");
-    }
-    if (values.size() != 4)
-      throw InvalidInput(fmt::format("{}{} fields: must be 4, {}", where, values.size(), kBatchHeader));
-    const SlabResult r = checkedSlab(values[0], values[1], values[2], values[3], where).result();
-    output += fmt::format("{},{:.17g},{:.17g},{:.17g}\n", line, r.reflectance, r.transmittance, r.direct);
-  }
-  fmt::print("{}", output);
-  return 0;
-}
-
-int runSlab(const SlabOptions& options, bool json) {
-  if (!options.batch.empty()) return runBatch(options.batch);
-  const Slab slab = checkedSlab(options.asymmetry, options.albedo, options.thickness, options.mu0, "");
-  for (const double depth : options.depths)
-    check(depth, "", "depth", depth >= 0. && depth <= options.thickness,
-          fmt::format("in [0, {}], the thickness", options.thickness));
-  const auto start = std::chrono::steady_clock::now();
-  const SlabResult r = slab.result();
-  struct Row {
-    double depth, down, up, direct, radiance_down, radiance_up;
-  };
-  std::vector<Row> rows;
-  for (const double depth : options.depths) {
-    const auto powers = slab.at(depth);
-    const double direct = spp::precise::directPower(depth, slab.mu0);
-    const auto radiance = spp::precise::sppDiffuseRadiance(powers, direct);
-    rows.push_back({depth, powers.down, powers.up, direct, radiance.down, radiance.up});
-  }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (json) {
-    nlohmann::ordered_json radiance = nlohmann::ordered_json::array();
-    for (const Row& row : rows)  // the model's radiance is the same for all directions of a half: one value for each
-      for (const auto& [mu, value] : {std::pair{1., row.radiance_down}, std::pair{-1., row.radiance_up}})
-        radiance.push_back({{"depth", row.depth}, {"mu", mu}, {"phi_deg", 0.}, {"value", value}});
-    const nlohmann::ordered_json result{{"reflectance", r.reflectance},
-                                        {"transmittance", r.transmittance},
-                                        {"direct", r.direct},
-                                        {"absorptance", std::max(0., 1. - r.reflectance - r.transmittance)},
-                                        {"radiance", radiance},
-                                        {"streams", 2},
-                                        {"seconds", seconds}};
-    fmt::print("{}\n", result.dump(2));
+int runBatch(const SlabOptions& options, const RunOptions& run) {
+  const std::vector<const SlabModel*> models = chosenModels(options);
+  if (models.size() != 1) throw InvalidInput("--batch: must have one model");
+  requireExactFor(options, models);
+  if (run.json) throw InvalidInput("--json: does not go with --batch, which writes CSV");
+  if (!options.output.empty()) requireWritable(options.output);
+  if (solveBatch(options.batch, *models.front(), exactSettings(options), options.output,
+                 terminalProgress("solving", run.quiet)))
     return 0;
+  fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
+  return kEndedEarly;
+}
+
+int runSlab(const SlabOptions& options, const RunOptions& run) {
+  if (!options.batch.empty()) return runBatch(options, run);
+  const std::vector<const SlabModel*> models = chosenModels(options);
+  SlabQuestion question = slabQuestion(options);
+  requireExactFor(options, models);
+  for (const SlabModel* model : models) requireCapable(*model, question);
+  if (!options.plot.empty()) requireNamed(options.plot, ".svg");
+
+  std::vector<ModelAnswer> answers;
+  for (const SlabModel* model : models) {
+    SlabQuestion asked = question;
+    if (!model->gives_radiance) asked.mus.clear();
+    const bool choose = options.tolerance && model == &exactSlabModel();
+    answers.push_back({model, choose ? answerWithin(*options.tolerance, *model, asked) : answer(*model, asked)});
+    if (choose) question.setup.settings.streams = answers.back().answer.streams;
+    if (interrupted()) return kEndedEarly;
   }
-  fmt::print("reflectance   {:.9f}\ntransmittance {:.9f}\n  direct      {:.9f}\nabsorptance   {:.9f}\n", r.reflectance,
-             r.transmittance, r.direct, std::max(0., 1. - r.reflectance - r.transmittance));
-  if (!rows.empty())
-    fmt::print("\n{:>10} {:>12} {:>12} {:>12} {:>15} {:>15}\n", "depth", "P+", "P-", "direct", "radiance down",
-               "radiance up");
-  for (const Row& row : rows)
-    fmt::print("{:10.4g} {:12.6f} {:12.6f} {:12.6f} {:15.6f} {:15.6f}\n", row.depth, row.down, row.up, row.direct,
-               row.radiance_down, row.radiance_up);
+  std::string text;
+  if (run.json) {
+    text = slabJson(question, answers);
+  } else {
+    for (const ModelAnswer& given : answers)
+      text += (text.empty() ? "" : "\n") + slabText(question, given, options.tolerance);
+  }
+  if (!options.plot.empty()) {
+    std::vector<const SlabModel*> shown;
+    for (const SlabModel* model : models)
+      if (model->gives_radiance) shown.push_back(model);
+    if (shown.empty()) throw InvalidInput("--plot: must have a model that gives radiance");
+    writeWhole(options.plot, slabPlot(shown, question, options.plot_log));
+    if (!run.json) text += fmt::format("\nwrote {}\n", options.plot);
+  }
+  fmt::print("{}", text);
   return 0;
 }
 
@@ -144,27 +76,129 @@ CLI::Validator number() {
       "");
 }
 
+CLI::Validator evenStreams() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        int value = 0;
+        const bool ok = CLI::detail::lexical_cast(text, value) && value >= 2 && value <= 256 && value % 2 == 0;
+        return ok ? std::string() : "\"" + text + "\": must be an even whole number, 2 to 256";
+      },
+      "");
+}
+
+struct Options {
+  CLI::App& command;
+  CLI::Option* add(const char* name, auto& value, const char* about, const char* group) {
+    return command.add_option(name, value, about)->group(group);
+  }
+  CLI::Option* addNumber(const char* name, auto& value, const char* about, const char* group) {
+    return add(name, value, about, group)->check(number());
+  }
+  CLI::Option* addFlag(const char* name, bool& value, const char* about, const char* group) {
+    return command.add_flag(name, value, about)->group(group);
+  }
+};
+
+void exclude(CLI::Option* option, std::initializer_list<CLI::Option*> others) {
+  for (CLI::Option* other : others) option->excludes(other);
+}
+
 }  // namespace
 
-void addSlab(CLI::App& app, RunOptions& options, int& status) {
+void addSlab(CLI::App& app, RunOptions& run, int& status) {
   auto slab = std::make_shared<SlabOptions>();
-  CLI::App* command = addCommand(app, options, "slab", "Solve one plane-parallel slab, or a file of them");
-  command->add_option("--model", slab->model, "spp: the simplified plane-parallel model (default)")
-      ->check(CLI::IsMember({"spp"}));
-  command->add_option("--omega", slab->albedo, "Single-scattering albedo, 0 to 1 (default 0.95)")->check(number());
-  command
-      ->add_option("--g", slab->asymmetry, "Asymmetry of Henyey-Greenstein scattering, above -1, below 1 (default 0)")
-      ->check(number());
-  command->add_option("--thickness", slab->thickness, "Optical thickness, above 0; inf for a half space (default 10)")
-      ->check(number());
-  command->add_option("--mu0", slab->mu0, "|cos| of the beam to the slab's normal, above 0, at most 1 (default 1)")
-      ->check(number());
-  command->add_option("--depths", slab->depths, "Optical depths to print the light at, such as 0,1,5")
-      ->delimiter(',')
-      ->check(number());
-  command->add_option("--batch", slab->batch,
-                      "CSV with columns g,omega,thickness,mu0, written back with reflectance,transmittance,direct");
-  command->callback([slab, &options, &status] { status = runSlab(*slab, options.json); });
+  CLI::App* command = addCommand(app, run, "slab", "Solve one plane-parallel slab, or a file of them");
+  Options options{*command};
+  std::string names;
+  for (const SlabModel& model : slabModels())
+    names += fmt::format("{}{}: {}", names.empty() ? "" : "; ", model.name, model.label);
+  auto* model = options.add("--model", slab->models, "", "Model")->delimiter(',');
+  model->description("One or more, such as pp,spp (default pp). " + names);
+  auto* streams =
+      options.add("--streams", slab->streams,
+                  "N, directions of the exact solver over both hemispheres; even, 2 to 256 (default 16)", "Model");
+  streams->check(evenStreams());
+  auto* tolerance =
+      options.add("--tolerance", slab->tolerance,
+                  "Choose N: the smallest of 4, 8, 16 ... 256 whose result differs from the next one's by "
+                  "less than this",
+                  "Model");
+  tolerance->check(numberIn(1e-15, 1., "a number, 1e-15 to 1"));
+  options.addFlag("--no-delta-m", slab->no_delta_m, "Cut the phase function's series at N moments, without delta-M",
+                  "Model");
+  auto* no_corrections = options.addFlag("--no-corrections", slab->no_corrections,
+                                         "Radiance by N moments of the phase function, without corrections", "Model");
+  auto* residual = options.addFlag("--residual", slab->residual,
+                                   "Put the solution back into its equation and print what remains", "Model");
+
+  const char* medium = "Slab";
+  auto* omega = options.addNumber("--omega", slab->albedo, "Single-scattering albedo, 0 to 1 (default 0.95)", medium);
+  auto* g = options.addNumber("--g", slab->asymmetry,
+                              "Asymmetry of Henyey-Greenstein scattering, above -1, below 1 (default 0)", medium);
+  auto* moments =
+      options.add("--moments", slab->moments,
+                  "File of the phase function's Legendre moments, chi_0 = 1 first, by lines or commas", medium);
+  auto* thickness = options.addNumber("--thickness", slab->thickness,
+                                      "Optical thickness, of leaves: leaf area index; above 0; inf for a half space "
+                                      "(default 10)",
+                                      medium);
+  auto* layers =
+      options.add("--layers", slab->layers, "CSV file of layers from the top down, columns thickness,omega,g", medium);
+  auto* ground = options.addNumber("--ground-albedo", slab->ground_albedo,
+                                   "Albedo of Lambert's ground under the slab (default 0)", medium);
+  auto* leaves = options.add("--leaves", slab->leaves,
+                             "Leaves instead of particles, inclined as: spherical, planophile, erectophile, "
+                             "plagiophile, extremophile, uniform, ellipsoidal:RATIO or beta:MEAN,DEVIATION in degrees",
+                             medium);
+  auto* reflectance = options.addNumber("--reflectance", slab->leaf_reflectance, "Of a leaf (default 0.475)", medium);
+  auto* transmittance =
+      options.addNumber("--transmittance", slab->leaf_transmittance, "Of a leaf (default 0.475)", medium);
+  auto* hot_spot =
+      options.addNumber("--hot-spot", slab->hot_spot,
+                        "Leaf diameter over canopy height, which makes the hot spot (default 0: none)", medium);
+
+  const char* light = "Light";
+  auto* mu0 = options.addNumber("--mu0", slab->mu0,
+                                "|cos| of the beam to the slab's normal, above 0, at most 1 (default 1); its azimuth "
+                                "is 0",
+                                light);
+  auto* sky = options.addNumber("--sky", slab->sky,
+                                "Radiance of diffuse light from above, the same from everywhere, in place of the beam; "
+                                "with --mu0: beside a beam of irradiance 1",
+                                light);
+
+  const char* results = "Results";
+  const auto list = [&](const char* name, std::vector<double>& values, const char* about) {
+    return options.addNumber(name, values, about, results)->delimiter(',');
+  };
+  auto* depths = list("--depths", slab->depths, "Depths to print the light at, such as 0,1,5");
+  auto* mus = list("--mu", slab->mus,
+                   "Cosines of directions to print radiance for, to the downward vertical: above 0 travels down; such "
+                   "as 1,0.5,-0.5 (default 1,-1)");
+  auto* phis = list("--phi", slab->phis, "Their azimuths of travel in degrees, such as 0,90,180 (default 0)");
+  auto* plot = options.add("--plot", slab->plot,
+                           "Draw radiance in the principal plane into this SVG file, at --depths or at the top, middle "
+                           "and bottom",
+                           results);
+  auto* plot_log = options.addFlag("--plot-log", slab->plot_log, "With a logarithmic radius", results);
+  auto* batch = options.add("--batch", slab->batch,
+                            "Solve all slabs of this CSV file, columns g,omega,thickness,mu0; written back with "
+                            "reflectance,transmittance,direct",
+                            results);
+  auto* output = options.add("-o", slab->output, "File for the results of --batch, instead of stdout", results);
+
+  exclude(streams, {tolerance});
+  exclude(moments, {g});
+  exclude(leaves, {omega, g, moments});
+  exclude(layers, {omega, g, moments, thickness, leaves});
+  exclude(batch, {omega, g, moments, thickness, layers, ground, leaves, mu0, sky, depths, mus, phis, plot, tolerance,
+                  no_corrections, residual});
+  for (CLI::Option* option : {reflectance, transmittance, hot_spot}) option->needs(leaves);
+  plot_log->needs(plot);
+  output->needs(batch);
+  for (CLI::Option* option : {model, moments, layers, leaves, plot, batch, output})
+    option->check([](const std::string& text) { return text.empty() ? "must not be empty" : std::string(); });
+  command->callback([slab, &run, &status] { status = runSlab(*slab, run); });
 }
 
 }  // namespace sunfleck::apps

@@ -8,9 +8,11 @@ namespace sunfleck::apps {
 
 void addValidate(CLI::App& app, RunOptions& options, int& status);
 void addSlab(CLI::App& app, RunOptions& options, int& status);
+void addTables(CLI::App& app, RunOptions& options, int& status);
 void addPlant(CLI::App& app, RunOptions& options, int& status);
 void addVoxelize(CLI::App& app, RunOptions& options, int& status);
 void addTrace(CLI::App& app, RunOptions& options, int& status);
 void addRender(CLI::App& app, RunOptions& options, int& status);
+void addBench(CLI::App& app, RunOptions& options, int& status);
 
 }  // namespace sunfleck::apps

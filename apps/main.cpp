@@ -75,10 +75,12 @@ int run(int count, char** arguments) {
   int status = 0;
   apps::addValidate(app, options, status);
   apps::addSlab(app, options, status);
+  apps::addTables(app, options, status);
   apps::addPlant(app, options, status);
   apps::addVoxelize(app, options, status);
   apps::addTrace(app, options, status);
   apps::addRender(app, options, status);
+  apps::addBench(app, options, status);
   try {
     app.parse(withCommand(app, count, arguments));
   } catch (const CLI::ParseError& e) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/compare/detail/svg_text.hpp"
+
 namespace sunfleck {
 namespace {
 
@@ -32,12 +34,6 @@ Axis axisTo(double high, double from, double to, int most) {
   return {.low = 0., .high = step * std::ceil(top / step), .step = step, .from = from, .to = to};
 }
 
-std::string text(double x, double y, const std::string& anchor, const std::string& content,
-                 const std::string& more = "") {
-  return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}"{}>{}</text>)", x, y, anchor, more,
-                     escapeMarkup(content));
-}
-
 std::string frame(const Axis& y, const std::string& y_title, double per_unit, const std::string& unit) {
   std::string svg = fmt::format(
       R"(<svg viewBox="0 0 {0} {1}" width="{0}" height="{1}" role="img" font-family="sans-serif" font-size="12">)",
@@ -46,10 +42,10 @@ std::string frame(const Axis& y, const std::string& y_title, double per_unit, co
     const double value = y.low + i * y.step;
     svg += fmt::format(R"(<line x1="{}" x2="{}" y1="{:.1f}" y2="{:.1f}" stroke="#ddd"/>)", kLeft, kRight, y.at(value),
                        y.at(value));
-    svg += text(kLeft - 6., y.at(value) + 4., "end", fmt::format("{:g}{}", value * per_unit, unit));
+    svg += svgText(kLeft - 6., y.at(value) + 4., "end", fmt::format("{:g}{}", value * per_unit, unit));
   }
-  svg += text(14., 0.5 * (kTop + kBottom), "middle", y_title,
-              fmt::format(R"svg( transform="rotate(-90 14 {:.1f})")svg", 0.5 * (kTop + kBottom)));
+  svg += svgText(14., 0.5 * (kTop + kBottom), "middle", y_title,
+                 fmt::format(R"svg( transform="rotate(-90 14 {:.1f})")svg", 0.5 * (kTop + kBottom)));
   return svg;
 }
 
@@ -64,7 +60,7 @@ std::string legend(const std::vector<LegendEntry>& entries) {
   for (const LegendEntry& entry : entries) {
     svg += fmt::format(R"(<rect x="{:.1f}" y="10" width="12" height="12" fill="{}" stroke="{}" stroke-width="1.5"/>)",
                        x, entry.outlined ? "none" : entry.colour, entry.colour);
-    svg += text(x + 17., 20.5, "start", entry.label);
+    svg += svgText(x + 17., 20.5, "start", entry.label);
     x += 36. + 7. * static_cast<double>(entry.label.size());
   }
   return svg;
@@ -106,8 +102,8 @@ std::string linePlot(const std::string& x_title, const std::string& y_title, con
   const Axis x = axisTo(x_high, kLeft, kRight, 10), y = axisTo(y_high, kBottom, kTop, 6);
   std::string svg = frame(y, y_title, 1., "");
   for (int i = 0; x.low + i * x.step <= x.high * (1. + 1e-9); ++i)
-    svg += text(x.at(x.low + i * x.step), kBottom + 18., "middle", fmt::format("{:g}", x.low + i * x.step));
-  svg += text(0.5 * (kLeft + kRight), kBottom + 38., "middle", x_title);
+    svg += svgText(x.at(x.low + i * x.step), kBottom + 18., "middle", fmt::format("{:g}", x.low + i * x.step));
+  svg += svgText(0.5 * (kLeft + kRight), kBottom + 38., "middle", x_title);
   std::vector<LegendEntry> entries;
   for (const PlotLine& line : lines) {
     if (line.points.empty()) continue;
@@ -146,15 +142,15 @@ std::string barPlot(const std::string& y_title, const std::vector<PlotBar>& bars
         R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}" stroke="{}" stroke-width="1.5"/>)",
         x + 0.08 * slot, y.at(bar.value), 0.84 * slot, kBottom - y.at(bar.value), bar.outlined ? "none" : bar.colour,
         bar.colour);
-    svg += text(x + 0.5 * slot, y.at(bar.value) - 4., "middle", fmt::format("{:.3g}", 100. * bar.value),
-                R"( font-size="11")");
+    svg += svgText(x + 0.5 * slot, y.at(bar.value) - 4., "middle", fmt::format("{:.3g}", 100. * bar.value),
+                   R"( font-size="11")");
     x += slot;
     if (i + 1 == bars.size() || bars[i + 1].group != bar.group) {
       const std::size_t comma = bar.group.find(", ");
-      svg += text(0.5 * (group_start + x), kBottom + 18., "middle", bar.group.substr(0, comma));
+      svg += svgText(0.5 * (group_start + x), kBottom + 18., "middle", bar.group.substr(0, comma));
       if (comma != std::string::npos)
-        svg +=
-            text(0.5 * (group_start + x), kBottom + 33., "middle", bar.group.substr(comma + 2), R"( font-size="11")");
+        svg += svgText(0.5 * (group_start + x), kBottom + 33., "middle", bar.group.substr(comma + 2),
+                       R"( font-size="11")");
       group_start = x += slot;
     }
   }

@@ -1,0 +1,120 @@
+#include "apps/slab_output.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace sunfleck::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// An azimuth as it was typed: radians and back leave a last digit.
+double degrees(double radians) {
+  return std::round(radians * 180. / std::numbers::pi * 1e9) / 1e9;
+}
+
+double radianceAt(const SlabQuestion& question, const SlabAnswer& answer, std::size_t d, std::size_t i, std::size_t j) {
+  return answer.radiances[(d * question.mus.size() + i) * question.phis.size() + j];
+}
+
+std::string fluxTable(const SlabQuestion& question, const SlabAnswer& answer) {
+  std::string text = fmt::format(
+      "\nFluxes, as shares of the flux that arrives; mean intensity in the unit of radiance\n"
+      "{:>12} {:>14} {:>14} {:>14} {:>16}\n",
+      "depth", "down, diffuse", "down, direct", "up", "mean intensity");
+  for (std::size_t d = 0; d < question.depths.size(); ++d) {
+    const pp::Fluxes& f = answer.fluxes[d];
+    text += fmt::format("{:12.6g} {:14.8f} {:14.8f} {:14.8f} {:16.8g}\n", question.depths[d], f.down, f.direct, f.up,
+                        f.mean_intensity);
+  }
+  return text;
+}
+
+std::string radianceTable(const SlabQuestion& question, const SlabAnswer& answer) {
+  std::string text = fmt::format(
+      "\nDiffuse radiance [1/sr, {}]; mu > 0 travels downward\n{:>12} {:>12}",
+      question.setup.problem.beam ? "per irradiance 1 of a plane that faces the beam" : "in the unit of the sky",
+      "depth", "mu");
+  for (const double phi : question.phis) text += fmt::format(" {:>14}", fmt::format("phi {:g} deg", degrees(phi)));
+  text += '\n';
+  for (std::size_t d = 0; d < question.depths.size(); ++d)
+    for (std::size_t i = 0; i < question.mus.size(); ++i) {
+      text += fmt::format("{:12.6g} {:12.6g}", question.depths[d], question.mus[i]);
+      for (std::size_t j = 0; j < question.phis.size(); ++j)
+        text += fmt::format(" {:14.8g}", radianceAt(question, answer, d, i, j));
+      text += '\n';
+    }
+  return text;
+}
+
+Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer) {
+  Json radiance = Json::array(), fluxes = Json::array();
+  for (std::size_t d = 0; d < question.depths.size(); ++d) {
+    const pp::Fluxes& f = answer.fluxes[d];
+    fluxes.push_back({{"depth", question.depths[d]},
+                      {"down", f.down},
+                      {"direct", f.direct},
+                      {"up", f.up},
+                      {"mean_intensity", f.mean_intensity}});
+    if (answer.radiances.empty()) continue;
+    for (std::size_t i = 0; i < question.mus.size(); ++i)
+      for (std::size_t j = 0; j < question.phis.size(); ++j)
+        radiance.push_back({{"depth", question.depths[d]},
+                            {"mu", question.mus[i]},
+                            {"phi_deg", degrees(question.phis[j])},
+                            {"value", radianceAt(question, answer, d, i, j)}});
+  }
+  Json json{{"reflectance", answer.budget.reflectance},
+            {"transmittance", answer.budget.transmittance},
+            {"direct", answer.budget.direct},
+            {"absorptance", answer.budget.absorptance},
+            {"radiance", std::move(radiance)},
+            {"fluxes", std::move(fluxes)},
+            {"streams", answer.streams},
+            {"seconds", answer.seconds}};
+  if (answer.difference) json["difference"] = *answer.difference;
+  if (answer.residual) json["residual"] = *answer.residual;
+  return json;
+}
+
+}  // namespace
+
+std::string slabText(const SlabQuestion& question, const ModelAnswer& given, const std::optional<double>& tolerance) {
+  const SlabAnswer& answer = given.answer;
+  const SlabBudget& budget = answer.budget;
+  std::string text = fmt::format("{} ({}), N = {}{:>12.3g} ms\n", given.model->name, given.model->label, answer.streams,
+                                 1e3 * answer.seconds);
+  if (answer.difference)
+    text +=
+        *answer.difference < *tolerance
+            ? fmt::format("N = {} is within {:.2g} of N = {}\n", answer.streams, *answer.difference, 2 * answer.streams)
+            : fmt::format("the tolerance of {:.2g} is not reached: N = {} is {:.2g} from N = {}\n", *tolerance,
+                          answer.streams, *answer.difference, answer.streams / 2);
+  text += fmt::format(
+      "\nShares of the flux that arrives\n  reflectance    {:.12f}\n  transmittance  {:.12f}\n    direct       "
+      "{:.12f}\n"
+      "  absorptance    {:.12f}\n",
+      budget.reflectance, budget.transmittance, budget.direct, budget.absorptance);
+  if (!question.depths.empty()) text += fluxTable(question, answer);
+  if (!answer.radiances.empty()) text += radianceTable(question, answer);
+  if (answer.residual)
+    text += fmt::format("\nresidual of the transfer equation at the nodes, over the largest radiance: {:.2g}\n",
+                        *answer.residual);
+  return text;
+}
+
+std::string slabJson(const SlabQuestion& question, const std::vector<ModelAnswer>& answers) {
+  if (answers.size() == 1) return jsonOf(question, answers.front().answer).dump(2) + "\n";
+  Json models = Json::array();
+  for (const ModelAnswer& given : answers) {
+    Json json{{"model", given.model->name}};
+    json.update(jsonOf(question, given.answer));
+    models.push_back(std::move(json));
+  }
+  return Json{{"models", std::move(models)}}.dump(2) + "\n";
+}
+
+}  // namespace sunfleck::apps

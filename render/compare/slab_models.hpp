@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "pp_solver/problem.hpp"
+#include "pp_solver/slab_batch.hpp"
+#include "pp_solver/solver.hpp"
+
+namespace sunfleck {
+
+// What a model of a slab is asked. The exact solver takes any problem; closed forms take only those that `homogeneous`
+// can tell.
+struct SlabSetup {
+  pp::Problem problem;
+  pp::Settings settings;                    // of the exact solver
+  std::optional<pp::SlabCase> homogeneous;  // the same problem, where it is one slab of Henyey-Greenstein particles on
+                                            // black ground under a beam of irradiance 1 and azimuth 0
+};
+SlabSetup homogeneousSlab(const pp::SlabCase& slab, const pp::Settings& settings = {});
+
+// Where the light that arrives ends up, as shares of it [1].
+struct SlabBudget {
+  double reflectance, transmittance, direct, absorptance;  // transmittance includes direct
+};
+
+// A slab that one model has solved. Depths, cosines and azimuths are those of pp::Solver, which see.
+class SlabSolution {
+ public:
+  virtual ~SlabSolution() = default;
+  virtual SlabBudget budget() const = 0;
+  virtual double incident() const = 0;                // flux that arrives
+  virtual pp::Fluxes fluxes(double depth) const = 0;  // in the unit of `incident`
+  // Of diffuse light [1/sr, per irradiance 1]: result[(d * mus.size() + i) * phis.size() + j].
+  virtual void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
+                         std::span<double> result) = 0;
+  virtual int streams() const = 0;  // directions over both hemispheres that the model solves for
+  // How far the solution is from its own equation, where the model can tell: pp::Solver::residual.
+  virtual std::optional<double> residual() { return std::nullopt; }
+};
+
+// A model as the command line and the comparisons know it. A new one is a new line of slabModels().
+struct SlabModel {
+  std::string_view name;   // as typed
+  std::string_view label;  // for people
+  bool any_problem;        // layers, leaves, ground, sky; else only SlabSetup::homogeneous
+  bool gives_radiance;     // else fluxes alone
+  std::unique_ptr<SlabSolution> (*solve)(const SlabSetup& setup);
+};
+
+// The exact solver first.
+std::span<const SlabModel> slabModels();
+const SlabModel& exactSlabModel();
+const SlabModel* findSlabModel(std::string_view name);  // nullptr: there is none
+
+}  // namespace sunfleck
