@@ -40,6 +40,8 @@ int runSlab(const SlabOptions& options, const RunOptions& run) {
   std::vector<ModelAnswer> answers;
   for (const SlabModel* model : models) {
     SlabQuestion asked = question;
+    asked.setup.effort.seed = run.seed;
+    asked.setup.effort.threads = run.threads;
     if (!model->gives_radiance) asked.mus.clear();
     const bool choose = options.tolerance && model == &exactSlabModel();
     answers.push_back({model, choose ? answerWithin(*options.tolerance, *model, asked) : answer(*model, asked)});
@@ -56,8 +58,8 @@ int runSlab(const SlabOptions& options, const RunOptions& run) {
   if (!options.plot.empty()) {
     std::vector<const SlabModel*> shown;
     for (const SlabModel* model : models)
-      if (model->gives_radiance) shown.push_back(model);
-    if (shown.empty()) throw InvalidInput("--plot: must have a model that gives radiance");
+      if (model->gives_radiance && !model->is_sample) shown.push_back(model);
+    if (shown.empty()) throw InvalidInput("--plot: must have a model other than mc");
     writeWhole(options.plot, slabPlot(shown, question, options.plot_log));
     if (!run.json) text += fmt::format("\nwrote {}\n", options.plot);
   }
@@ -128,6 +130,11 @@ void addSlab(CLI::App& app, RunOptions& run, int& status) {
                   "Model");
   auto* no_corrections = options.addFlag("--no-corrections", slab->no_corrections,
                                          "Radiance by N moments of the phase function, without corrections", "Model");
+  auto* collocation = options.addFlag(
+      "--collocation", slab->collocation,
+      "Scatter between the directions as DISORT does, to compare with it digit by digit; slower", "Model");
+  auto* paths = options.add("--paths", slab->paths, "Paths of the model mc, 64 to 10^12 (default 200000)", "Model");
+  paths->check(numberIn(64., 1e12, "a whole number, 64 to 10^12"));
   auto* residual = options.addFlag("--residual", slab->residual,
                                    "Put the solution back into its equation and print what remains", "Model");
 
@@ -192,7 +199,7 @@ void addSlab(CLI::App& app, RunOptions& run, int& status) {
   exclude(leaves, {omega, g, moments});
   exclude(layers, {omega, g, moments, thickness, leaves});
   exclude(batch, {omega, g, moments, thickness, layers, ground, leaves, mu0, sky, depths, mus, phis, plot, tolerance,
-                  no_corrections, residual});
+                  no_corrections, collocation, paths, residual});
   for (CLI::Option* option : {reflectance, transmittance, hot_spot}) option->needs(leaves);
   plot_log->needs(plot);
   output->needs(batch);

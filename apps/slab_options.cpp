@@ -129,7 +129,8 @@ double totalThickness(const SlabQuestion& question) {
 pp::Settings exactSettings(const SlabOptions& options) {
   return {.streams = options.streams.value_or(pp::Settings{}.streams),
           .delta_m = !options.no_delta_m,
-          .corrections = !options.no_corrections};
+          .corrections = !options.no_corrections,
+          .collocation = options.collocation};
 }
 
 void requireExactFor(const SlabOptions& options, const std::vector<const SlabModel*>& models) {
@@ -141,6 +142,7 @@ void requireExactFor(const SlabOptions& options, const std::vector<const SlabMod
   refuse(options.tolerance.has_value(), "--tolerance");
   refuse(options.no_delta_m, "--no-delta-m");
   refuse(options.no_corrections, "--no-corrections");
+  refuse(options.collocation, "--collocation");
   refuse(options.residual, "--residual");
 }
 
@@ -161,6 +163,7 @@ SlabQuestion slabQuestion(const SlabOptions& options) {
   }
   if (!options.sky || options.mu0) problem.beam = pp::Beam{.mu0 = slab.mu0};
   question.setup.settings = exactSettings(options);
+  if (options.paths) question.setup.effort.paths = *options.paths;
   const bool special = !options.layers.empty() || !options.leaves.empty() || !options.moments.empty() || options.sky ||
                        options.ground_albedo > 0.;
   if (!special) question.setup.homogeneous = slab;

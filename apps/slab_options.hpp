@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +25,8 @@ struct SlabOptions {
   std::optional<double> sky;                                    // radiance from above [1/sr]
   std::optional<int> streams;                                   // 16 unless chosen by the tolerance
   std::optional<double> tolerance;
-  bool no_delta_m = false, no_corrections = false, residual = false;
+  bool no_delta_m = false, no_corrections = false, collocation = false, residual = false;
+  std::optional<std::uint64_t> paths;  // of Monte Carlo
   std::vector<double> depths, mus, phis;
   std::string batch, output, plot;
   bool plot_log = false;

@@ -16,19 +16,24 @@ double degrees(double radians) {
   return std::round(radians * 180. / std::numbers::pi * 1e9) / 1e9;
 }
 
+// Without the sign of what is 0 but for rounding.
+double shown(double flux) {
+  return std::abs(flux) < 1e-15 ? 0. : flux;
+}
+
 double radianceAt(const SlabQuestion& question, const SlabAnswer& answer, std::size_t d, std::size_t i, std::size_t j) {
   return answer.radiances[(d * question.mus.size() + i) * question.phis.size() + j];
 }
 
-std::string fluxTable(const SlabQuestion& question, const SlabAnswer& answer) {
+std::string fluxTable(const SlabQuestion& question, const SlabAnswer& answer, bool is_sample) {
   std::string text = fmt::format(
       "\nFluxes, as shares of the flux that arrives; mean intensity in the unit of radiance\n"
       "{:>12} {:>14} {:>14} {:>14} {:>16}\n",
       "depth", "down, diffuse", "down, direct", "up", "mean intensity");
   for (std::size_t d = 0; d < question.depths.size(); ++d) {
     const pp::Fluxes& f = answer.fluxes[d];
-    text += fmt::format("{:12.6g} {:14.8f} {:14.8f} {:14.8f} {:16.8g}\n", question.depths[d], f.down, f.direct, f.up,
-                        f.mean_intensity);
+    text += fmt::format("{:12.6g} {:14.8f} {:14.8f} {:14.8f} {:>16}\n", question.depths[d], shown(f.down), f.direct,
+                        shown(f.up), is_sample ? "-" : fmt::format("{:.8g}", f.mean_intensity));
   }
   return text;
 }
@@ -50,15 +55,12 @@ std::string radianceTable(const SlabQuestion& question, const SlabAnswer& answer
   return text;
 }
 
-Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer) {
+Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer, bool is_sample) {
   Json radiance = Json::array(), fluxes = Json::array();
   for (std::size_t d = 0; d < question.depths.size(); ++d) {
     const pp::Fluxes& f = answer.fluxes[d];
-    fluxes.push_back({{"depth", question.depths[d]},
-                      {"down", f.down},
-                      {"direct", f.direct},
-                      {"up", f.up},
-                      {"mean_intensity", f.mean_intensity}});
+    fluxes.push_back({{"depth", question.depths[d]}, {"down", f.down}, {"direct", f.direct}, {"up", f.up}});
+    if (!is_sample) fluxes.back()["mean_intensity"] = f.mean_intensity;
     if (answer.radiances.empty()) continue;
     for (std::size_t i = 0; i < question.mus.size(); ++i)
       for (std::size_t j = 0; j < question.phis.size(); ++j)
@@ -77,6 +79,10 @@ Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer) {
             {"seconds", answer.seconds}};
   if (answer.difference) json["difference"] = *answer.difference;
   if (answer.residual) json["residual"] = *answer.residual;
+  if (answer.standard_errors)
+    json["standard_errors"] = {{"reflectance", answer.standard_errors->reflectance},
+                               {"transmittance", answer.standard_errors->transmittance},
+                               {"absorptance", answer.standard_errors->absorptance}};
   return json;
 }
 
@@ -85,20 +91,28 @@ Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer) {
 std::string slabText(const SlabQuestion& question, const ModelAnswer& given, const std::optional<double>& tolerance) {
   const SlabAnswer& answer = given.answer;
   const SlabBudget& budget = answer.budget;
-  std::string text = fmt::format("{} ({}), N = {}{:>12.3g} ms\n", given.model->name, given.model->label, answer.streams,
-                                 1e3 * answer.seconds);
+  const std::string effort = given.model->is_sample ? fmt::format("{} paths", question.setup.effort.paths)
+                                                    : fmt::format("N = {}", answer.streams);
+  std::string text =
+      fmt::format("{} ({}), {}{:>12.3g} ms\n", given.model->name, given.model->label, effort, 1e3 * answer.seconds);
   if (answer.difference)
     text +=
         *answer.difference < *tolerance
             ? fmt::format("N = {} is within {:.2g} of N = {}\n", answer.streams, *answer.difference, 2 * answer.streams)
             : fmt::format("the tolerance of {:.2g} is not reached: N = {} is {:.2g} from N = {}\n", *tolerance,
                           answer.streams, *answer.difference, answer.streams / 2);
-  text += fmt::format(
-      "\nShares of the flux that arrives\n  reflectance    {:.12f}\n  transmittance  {:.12f}\n    direct       "
-      "{:.12f}\n"
-      "  absorptance    {:.12f}\n",
-      budget.reflectance, budget.transmittance, budget.direct, budget.absorptance);
-  if (!question.depths.empty()) text += fluxTable(question, answer);
+  const auto line = [&](const char* name, double SlabBudget::*share) {
+    text += fmt::format("  {:<14} {:.12f}", name, budget.*share);
+    if (answer.standard_errors && (*answer.standard_errors).*share > 0.)
+      text += fmt::format(" +- {:.1e}", (*answer.standard_errors).*share);
+    text += '\n';
+  };
+  text += "\nShares of the flux that arrives\n";
+  line("reflectance", &SlabBudget::reflectance);
+  line("transmittance", &SlabBudget::transmittance);
+  line("  direct", &SlabBudget::direct);
+  line("absorptance", &SlabBudget::absorptance);
+  if (!question.depths.empty()) text += fluxTable(question, answer, given.model->is_sample);
   if (!answer.radiances.empty()) text += radianceTable(question, answer);
   if (answer.residual)
     text += fmt::format("\nresidual of the transfer equation at the nodes, over the largest radiance: {:.2g}\n",
@@ -107,11 +121,12 @@ std::string slabText(const SlabQuestion& question, const ModelAnswer& given, con
 }
 
 std::string slabJson(const SlabQuestion& question, const std::vector<ModelAnswer>& answers) {
-  if (answers.size() == 1) return jsonOf(question, answers.front().answer).dump(2) + "\n";
+  if (answers.size() == 1)
+    return jsonOf(question, answers.front().answer, answers.front().model->is_sample).dump(2) + "\n";
   Json models = Json::array();
   for (const ModelAnswer& given : answers) {
     Json json{{"model", given.model->name}};
-    json.update(jsonOf(question, given.answer));
+    json.update(jsonOf(question, given.answer, given.model->is_sample));
     models.push_back(std::move(json));
   }
   return Json{{"models", std::move(models)}}.dump(2) + "\n";

@@ -98,8 +98,9 @@ std::string arrow(double mu0) {
          svgText(label.x, label.y - 3., "middle", "beam", R"( fill="#b58300" font-size="13")");
 }
 
+// Entries below the plot, as many to a line as fit; `bottom` is set to where they end.
 std::string legend(const std::vector<PrincipalPlane>& planes, const std::vector<double>& depths,
-                   const std::vector<std::string>& models) {
+                   const std::vector<std::string>& models, double& bottom) {
   std::string svg;
   double x = 24., y = 638.;
   const auto entry = [&](const std::string& label, const char* colour, const char* dash) {
@@ -119,6 +120,7 @@ std::string legend(const std::vector<PrincipalPlane>& planes, const std::vector<
     entry(fmt::format("{}, depth {:.4g}", plane.model, plane.depth), kColours[depth % kColours.size()],
           kDashes[model % kDashes.size()]);
   }
+  bottom = y + 24.;
   return svg;
 }
 
@@ -134,8 +136,8 @@ std::string radiancePlot(const RadiancePlot& plot) {
     curves += curve(plane, scale, kColours[depth % kColours.size()], kDashes[model % kDashes.size()]);
   }
   const double width = kPolarWidth + (plot.map ? kMapWidth : 0.);
-  const auto legend_rows = static_cast<double>((plot.planes.size() + 3) / 4);
-  const double height = kHeight + 18. * legend_rows;
+  double height = 0.;
+  const std::string curve_legend = legend(plot.planes, depths, models, height);
   std::string svg = fmt::format(
       R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0} {1}" width="{0}" height="{1}" role="img" )"
       R"(font-family="sans-serif" font-size="12"><rect width="{0}" height="{1}" fill="white"/>)"
@@ -151,7 +153,7 @@ std::string radiancePlot(const RadiancePlot& plot) {
   svg += svgText(kPolarWidth - 16., kY + kRadius + 12., "end", "light that travels down", R"( fill="#777")");
   svg += svgText(kX + kRadius + 32., kY - 4., "start", "azimuth 0°", R"( fill="#777" font-size="11")");
   svg += svgText(kX - kRadius - 32., kY - 4., "end", "180°", R"( fill="#777" font-size="11")");
-  svg += legend(plot.planes, depths, models);
+  svg += curve_legend;
   if (plot.map)
     svg += fmt::format(R"svg(<g transform="translate({} 0)">)svg", kPolarWidth) +
            radianceMapPanel(*plot.map, plot.beam_mu0, plot.logarithmic) + "</g>";

@@ -9,7 +9,7 @@ namespace sunfleck {
 SlabAnswer answer(const SlabModel& model, const SlabQuestion& question) {
   const auto start = std::chrono::steady_clock::now();
   const std::unique_ptr<SlabSolution> slab = model.solve(question.setup);
-  SlabAnswer answer{.budget = slab->budget(), .streams = slab->streams()};
+  SlabAnswer answer{.budget = slab->budget(), .standard_errors = slab->standardErrors(), .streams = slab->streams()};
   const double per_incident = slab->incident() > 0. ? 1. / slab->incident() : 1.;
   for (const double depth : question.depths) {
     pp::Fluxes fluxes = slab->fluxes(depth);

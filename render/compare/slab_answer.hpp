@@ -21,6 +21,7 @@ struct SlabAnswer {
   std::vector<pp::Fluxes> fluxes;  // at each depth, per incident flux, but for the mean intensity
   std::vector<double> radiances;   // [(d * mus + i) * phis + j]
   std::optional<double> residual;
+  std::optional<SlabBudget> standard_errors;  // of a sample
   int streams = 0;
   double seconds = 0.;  // that the model took
   // Where the number of streams was chosen: how far the next number's answer is.

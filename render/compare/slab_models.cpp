@@ -4,6 +4,7 @@
 #include <array>
 #include <numbers>
 
+#include "render/reference/slab_trace.hpp"
 #include "spp/forward_share.hpp"
 #include "spp/slab.hpp"
 #include "spp/stream_slab.hpp"
@@ -109,6 +110,46 @@ class RefinedSlab : public SlabSolution {
   spp::StreamSlab<double> slab_;
 };
 
+// Monte Carlo. Each question is a run of its own with the same seed; what it costs goes with the directions asked for.
+class SampledSlab : public SlabSolution {
+ public:
+  explicit SampledSlab(const SlabSetup& setup)
+      : slab_{.asymmetry = setup.homogeneous->asymmetry,
+              .albedo = setup.homogeneous->albedo,
+              .thickness = setup.homogeneous->thickness,
+              .mu0 = setup.homogeneous->mu0},
+        effort_(setup.effort),
+        total_(traceSlab(slab_, {}, effort_)) {}
+  SlabBudget budget() const override {
+    return {total_.reflectance.value, total_.transmittance.value, total_.direct, total_.absorptance.value};
+  }
+  std::optional<SlabBudget> standardErrors() const override {
+    return SlabBudget{total_.reflectance.standard_error, total_.transmittance.standard_error, 0.,
+                      total_.absorptance.standard_error};
+  }
+  double incident() const override { return slab_.mu0; }
+  pp::Fluxes fluxes(double depth) const override {
+    const SlabTraceResult traced = traceSlab(slab_, {.depths = {depth}}, effort_);
+    const double direct = slab_.mu0 * spp::precise::directPower(depth, slab_.mu0);
+    return {.up = traced.flux_up[0].value, .down = traced.flux_down[0].value - direct, .direct = direct};
+  }
+  void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
+                 std::span<double> result) override {
+    SlabMeasures measures;
+    for (const double depth : depths)
+      for (const double mu : mus)
+        for (const double phi : phis) measures.views.push_back({.depth = depth, .mu = mu, .azimuth = phi});
+    const SlabTraceResult traced = traceSlab(slab_, measures, effort_);
+    std::ranges::transform(traced.radiance, result.begin(), &Estimate::value);
+  }
+  int streams() const override { return 0; }
+
+ private:
+  TracedSlab slab_;
+  TraceEffort effort_;
+  SlabTraceResult total_;
+};
+
 spp::BeamInMedium mediumOf(const SlabSetup& setup) {
   return {
       .asymmetry = setup.homogeneous->asymmetry, .albedo = setup.homogeneous->albedo, .mu0 = setup.homogeneous->mu0};
@@ -135,16 +176,28 @@ std::unique_ptr<SlabSolution> solved(const SlabSetup& setup) {
 
 constexpr SlabModel closedForm(std::string_view name, std::string_view label,
                                std::unique_ptr<SlabSolution> (*solve)(const SlabSetup&)) {
-  return {.name = name, .label = label, .any_problem = false, .gives_radiance = true, .solve = solve};
+  return {
+      .name = name, .label = label, .any_problem = false, .gives_radiance = true, .is_sample = false, .solve = solve};
 }
 
 constexpr std::array kModels{
-    SlabModel{.name = "pp", .label = "exact", .any_problem = true, .gives_radiance = true, .solve = solved<ExactSlab>},
+    SlabModel{.name = "pp",
+              .label = "exact",
+              .any_problem = true,
+              .gives_radiance = true,
+              .is_sample = false,
+              .solve = solved<ExactSlab>},
     closedForm("spp", "simplified plane-parallel, unrefined", solved<SimplifiedSlab>),
     closedForm("sppr", "simplified plane-parallel, refined", refinedSpp),
     closedForm("twostream", "hemispheric two-stream, refined", twoStream),
     closedForm("nstream", "two streams and azimuth orders, refined", nStream),
     closedForm("best", "four streams, all azimuth orders, refined", fourStreams),
+    SlabModel{.name = "mc",
+              .label = "Monte Carlo",
+              .any_problem = false,
+              .gives_radiance = true,
+              .is_sample = true,
+              .solve = solved<SampledSlab>},
 };
 
 }  // namespace

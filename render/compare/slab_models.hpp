@@ -8,6 +8,7 @@
 #include "pp_solver/problem.hpp"
 #include "pp_solver/slab_batch.hpp"
 #include "pp_solver/solver.hpp"
+#include "render/reference/forward_trace.hpp"
 
 namespace sunfleck {
 
@@ -18,6 +19,7 @@ struct SlabSetup {
   pp::Settings settings;                    // of the exact solver
   std::optional<pp::SlabCase> homogeneous;  // the same problem, where it is one slab of Henyey-Greenstein particles on
                                             // black ground under a beam of irradiance 1 and azimuth 0
+  TraceEffort effort{.paths = 200'000};     // of Monte Carlo
 };
 SlabSetup homogeneousSlab(const pp::SlabCase& slab, const pp::Settings& settings = {});
 
@@ -37,6 +39,8 @@ class SlabSolution {
   virtual void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
                          std::span<double> result) = 0;
   virtual int streams() const = 0;  // directions over both hemispheres that the model solves for
+  // Where the model is a sample: the standard error of each share.
+  virtual std::optional<SlabBudget> standardErrors() const { return std::nullopt; }
   // How far the solution is from its own equation, where the model can tell: pp::Solver::residual.
   virtual std::optional<double> residual() { return std::nullopt; }
 };
@@ -47,6 +51,7 @@ struct SlabModel {
   std::string_view label;  // for people
   bool any_problem;        // layers, leaves, ground, sky; else only SlabSetup::homogeneous
   bool gives_radiance;     // else fluxes alone
+  bool is_sample;          // Monte Carlo: answers have standard errors, and mean intensity is not among them
   std::unique_ptr<SlabSolution> (*solve)(const SlabSetup& setup);
 };
 

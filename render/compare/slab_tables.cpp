@@ -91,7 +91,7 @@ std::vector<SlabTableRow> slabTables(std::span<const SlabModel* const> models, c
 std::vector<const SlabModel*> judgedSlabModels() {
   std::vector<const SlabModel*> models;
   for (const SlabModel& model : slabModels())
-    if (model.gives_radiance && &model != &exactSlabModel()) models.push_back(&model);
+    if (model.gives_radiance && !model.is_sample && &model != &exactSlabModel()) models.push_back(&model);
   return models;
 }
 
