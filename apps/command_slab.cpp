@@ -134,7 +134,7 @@ void addSlab(CLI::App& app, RunOptions& run, int& status) {
       "--collocation", slab->collocation,
       "Scatter between the directions as DISORT does, to compare with it digit by digit; slower", "Model");
   auto* paths = options.add("--paths", slab->paths, "Paths of the model mc, 64 to 10^12 (default 200000)", "Model");
-  paths->check(numberIn(64., 1e12, "a whole number, 64 to 10^12"));
+  paths->check(numberIn(64., 1e12, "a number, 64 to 10^12"));
   auto* residual = options.addFlag("--residual", slab->residual,
                                    "Put the solution back into its equation and print what remains", "Model");
 

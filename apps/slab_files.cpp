@@ -14,7 +14,7 @@ namespace sunfleck::apps {
 namespace {
 
 constexpr const char* kLayersHeader = "thickness,omega,g";
-constexpr std::size_t kMostLines = 100'000;  // far more layers or moments than anyone means
+constexpr std::size_t kMostLines = 10'000;  // far more layers or moments than anyone means
 
 std::ifstream opened(const std::string& file) {
   std::error_code failure;
@@ -87,7 +87,7 @@ pp::PhaseFunction readMoments(const std::string& file) {
       if (field.empty()) continue;
       const std::string where = fmt::format("{}:{}: ", file, number);
       const double moment = numberAt(field, where);
-      require(std::abs(moment) <= 1., fmt::format("{}chi_{}", where, moments.size()), moment, "in [-1, 1]");
+      require(std::abs(moment) <= 1., fmt::format("{}chi_{}", where, moments.size()), moment, "in (-1, 1), chi_0 = 1");
       if (moments.size() >= kMostLines)
         throw InvalidInput(fmt::format("{}must have at most {} moments", where, kMostLines));
       moments.push_back(moment);

@@ -102,8 +102,10 @@ void requireSlabCase(const pp::SlabCase& slab, const std::string& where) {
   };
   check(slab.asymmetry > -1. && slab.asymmetry < 1., "g", slab.asymmetry, "in (-1, 1)");
   check(slab.albedo >= 0. && slab.albedo <= 1., "omega", slab.albedo, "in [0, 1]");
-  check(slab.thickness > 0., "thickness", slab.thickness, "above 0; inf is allowed");
-  check(slab.mu0 > 0. && slab.mu0 <= 1., "mu0", slab.mu0, "in (0, 1]");
+  const bool thick =
+      slab.thickness >= pp::kLeastThickness && (slab.thickness <= pp::kMostThickness || std::isinf(slab.thickness));
+  check(thick, "thickness", slab.thickness, "above 0 (1e-100 to 1e100); inf is allowed");
+  check(slab.mu0 >= pp::kLeastCosine && slab.mu0 <= 1., "mu0", slab.mu0, "in (0, 1] (1e-100 or more)");
 }
 
 std::vector<const SlabModel*> chosenModels(const SlabOptions& options) {
@@ -163,7 +165,7 @@ SlabQuestion slabQuestion(const SlabOptions& options) {
   }
   if (!options.sky || options.mu0) problem.beam = pp::Beam{.mu0 = slab.mu0};
   question.setup.settings = exactSettings(options);
-  if (options.paths) question.setup.effort.paths = *options.paths;
+  if (options.paths) question.setup.effort.paths = static_cast<std::uint64_t>(*options.paths);
   const bool special = !options.layers.empty() || !options.leaves.empty() || !options.moments.empty() || options.sky ||
                        options.ground_albedo > 0.;
   if (!special) question.setup.homogeneous = slab;

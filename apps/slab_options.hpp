@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +25,7 @@ struct SlabOptions {
   std::optional<int> streams;                                   // 16 unless chosen by the tolerance
   std::optional<double> tolerance;
   bool no_delta_m = false, no_corrections = false, collocation = false, residual = false;
-  std::optional<std::uint64_t> paths;  // of Monte Carlo
+  std::optional<double> paths;  // of Monte Carlo
   std::vector<double> depths, mus, phis;
   std::string batch, output, plot;
   bool plot_log = false;

@@ -73,7 +73,7 @@ PhaseFunction PhaseFunction::sampled(std::vector<double> cosines, std::vector<do
   PhaseFunction phase;
   phase.cosines_ = std::move(cosines);
   phase.values_ = std::move(values);
-  // Each piece is a straight line; moments are exact while 64 points resolve l waves, so cut it as finely.
+  // Each piece is a straight line times P_l, whose waves 30 points resolve when the piece is cut as finely.
   constexpr int kOrders = 513;
   phase.moments_.assign(kOrders, 0.);
   using Gauss = boost::math::quadrature::gauss<double, 30>;

@@ -6,7 +6,7 @@
 namespace sunfleck::pp {
 
 // How a particle scatters: p(cos Theta) [1/sr], its integral over the sphere 1, and its Legendre moments
-// chi_l = 2 pi integral p P_l d(cos Theta), chi_0 = 1, |chi_l| <= 1.
+// chi_l = 2 pi integral p P_l d(cos Theta), chi_0 = 1, |chi_l| < 1.
 class PhaseFunction {
  public:
   PhaseFunction() = default;  // isotropic
@@ -15,8 +15,8 @@ class PhaseFunction {
   //   asymmetry  g, mean cosine of scattering [1], -1 < g < 1
   static PhaseFunction henyeyGreenstein(double asymmetry);
 
-  // A finite Legendre series. Throws InvalidInput unless chi_0 = 1 (or the list is empty), every |chi_l| <= 1 and the
-  // series is nowhere negative (but for 1e-3 of its mean, the rounding of published tables).
+  // A finite Legendre series. Throws InvalidInput unless chi_0 = 1 (or the list is empty), every other |chi_l| < 1 and
+  // the series is nowhere negative (but for 1e-3 of its mean, the rounding of published tables).
   static PhaseFunction fromMoments(std::vector<double> moments);
 
   // Samples of p in any unit, joined by straight lines in the cosine and scaled to 1.

@@ -48,7 +48,8 @@ void requireLayer(const Problem& problem, std::size_t index) {
   const Layer& layer = problem.layers[index];
   const Checked is(index);
   const bool infinite = std::isinf(layer.thickness);
-  is.require(layer.thickness >= 1e-200, "thickness", layer.thickness, "above 0");
+  is.require(layer.thickness >= kLeastThickness && (infinite || layer.thickness <= kMostThickness), "thickness",
+             layer.thickness, "above 0 (1e-100 to 1e100, or infinite)");
   is.require(!infinite || index + 1 == problem.layers.size(), "thickness", layer.thickness,
              "finite but in the last layer");
   is.radiance(layer.emission_top, "emission_top");
@@ -81,7 +82,8 @@ void requireSolvable(const Problem& problem) {
   is.require(!problem.layers.empty(), "number of layers", problem.layers.size(), "one or more");
   for (std::size_t i = 0; i < problem.layers.size(); ++i) requireLayer(problem, i);
   if (problem.beam) {
-    is.require(problem.beam->mu0 > 0. && problem.beam->mu0 <= 1., "mu0", problem.beam->mu0, "in (0, 1]");
+    is.require(problem.beam->mu0 >= kLeastCosine && problem.beam->mu0 <= 1., "mu0", problem.beam->mu0,
+               "in (0, 1] (1e-100 or more)");
     is.require(std::isfinite(problem.beam->azimuth), "azimuth", problem.beam->azimuth, "finite");
     is.radiance(problem.beam->irradiance, "irradiance");
   }
@@ -91,7 +93,10 @@ void requireSolvable(const Problem& problem) {
              "0 under an infinite layer");
   is.share(problem.ground.albedo, "ground albedo");
   is.radiance(problem.ground.emission, "ground emission");
-  is.require(problem.ground.brdf_modes >= 0, "brdf_modes", problem.ground.brdf_modes, "no less than 0");
+  if (problem.ground.brdf) {
+    is.require(problem.ground.brdf_modes >= 1, "brdf_modes", problem.ground.brdf_modes, "1 or more with a BRDF");
+    is.require(problem.ground.albedo == 0., "ground albedo", problem.ground.albedo, "0 beside a BRDF");
+  }
 }
 
 }  // namespace sunfleck::pp

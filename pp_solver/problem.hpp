@@ -20,10 +20,13 @@ struct Particles {
   PhaseFunction phase;
 };
 
+// Cosines and thicknesses outside of these would leave the range of numbers in their products.
+inline constexpr double kLeastCosine = 1e-100, kLeastThickness = 1e-100, kMostThickness = 1e100;
+
 // A homogeneous layer.
 struct Layer {
-  // Optical thickness of particles [1], leaf area index (one-sided leaf area above ground area) of leaves [1]. Above 0;
-  // infinity is allowed for the last layer.
+  // Optical thickness of particles [1], leaf area index (one-sided leaf area above ground area) of leaves [1]. 1e-100
+  // to 1e100; infinity is allowed for the last layer.
   double thickness = 1.;
   std::variant<Particles, LeafScattering> medium;
   // Planck radiance B at the top and at the bottom [radiance]; linear between. The layer emits (1 - omega) B.
@@ -32,7 +35,7 @@ struct Layer {
 
 // Parallel light from above.
 struct Beam {
-  double mu0 = 1.;         // |cos| of the angle to the vertical [1], (0, 1]
+  double mu0 = 1.;         // |cos| of the angle to the vertical [1], 1e-100 .. 1
   double azimuth = 0.;     // of travel [rad]
   double irradiance = 1.;  // on a plane that faces the beam
 };

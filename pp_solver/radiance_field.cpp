@@ -45,6 +45,10 @@ double secondDifference(double a, double b, double z) {
   return z * z * std::exp(-b * z) * sum;
 }
 
+bool isFunction(const Sky& sky) {
+  return std::holds_alternative<std::function<double(double, double)>>(sky);
+}
+
 // Where light is asked for: within each layer, the depths and what they are the answer to.
 struct Levels {
   std::vector<double> z;    // scaled, from the layer's top; the first is 0, the last the bottom of a finite layer
@@ -108,8 +112,7 @@ class Tracer {
 };
 
 int Tracer::modesWithLight() const {
-  const bool sky = std::holds_alternative<std::function<double(double, double)>>(s_.problem.above) ||
-                   std::holds_alternative<std::function<double(double, double)>>(s_.problem.below);
+  const bool sky = isFunction(s_.problem.above) || isFunction(s_.problem.below);
   int modes = 1;
   for (std::size_t p = 0; p < s_.layers.size(); ++p) {
     if (s_.layers[p].leaves) {
@@ -230,6 +233,10 @@ void Tracer::addBundle(const BasisRows& rows, bool sine, std::vector<double>& ad
 
 void Tracer::addModes(bool sine) {
   const int modes = modesWithLight();
+  // Light from a ground or a sky may leave out any number of modes: the series does not end before theirs.
+  const int given = isFunction(s_.problem.above) || isFunction(s_.problem.below)
+                        ? modes
+                        : std::min(modes, s_.problem.ground.brdf ? s_.problem.ground.brdf_modes : 0);
   int small = 0;
   for (int first = sine ? 1 : 0; first < modes;) {
     const BasisRows& rows = s_.bundle(first);
@@ -241,7 +248,7 @@ void Tracer::addModes(bool sine) {
       small = added[lane] <= s_.settings.azimuth_tolerance * largest ? small + 1 : 0;
     first += rows.lanes;
     s_.modes_used = std::max(s_.modes_used, std::min(first, modes));
-    if (small >= 2) break;
+    if (small >= 2 && first >= given) break;
   }
 }
 
@@ -272,6 +279,9 @@ void Tracer::addWhole() {
       };
       double carried = downward ? skyAlong(s_.problem.above, mu, phis_[j])
                                 : (std::isinf(s_.depth) ? 0. : skyAlong(s_.problem.below, mu, phis_[j]));
+      if (!downward && !std::isinf(s_.depth) && s_.problem.ground.brdf)
+        for (int m = 0; m < s_.problem.ground.brdf_modes; ++m)
+          carried += s_.beamOnGround() * s_.problem.ground.brdf(m, mu, s_.mu0) * std::cos(m * (phis_[j] - phi0));
       for (std::size_t step = 0; step < s_.layers.size(); ++step) {
         const std::size_t p = downward ? step : s_.layers.size() - 1 - step;
         const ScaledLayer& layer = s_.layers[p];
@@ -369,18 +379,16 @@ void Tracer::addHotSpot() {
 
 void Solver::radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
                        std::span<double> result) {
-  State& s = *state_;
-  require(s.solved, "problems solved", 0, "one before radiances are asked for");
+  State& s = solved();
   require(result.size() == depths.size() * mus.size() * phis.size(), "size of result", result.size(),
           "depths x mus x phis");
-  for (const double mu : mus) require(mu != 0. && std::abs(mu) <= 1., "mu", mu, "in [-1, 1] and not 0");
+  for (const double mu : mus)
+    require(std::abs(mu) >= kLeastCosine && std::abs(mu) <= 1., "mu", mu, "in [-1, 1] and not 0 (1e-100 or more)");
   for (const double phi : phis) require(std::isfinite(phi), "phi", phi, "finite");
   s.modes_used = 0;
   Tracer tracer(s, depths, mus, phis, result);
   tracer.addModes(false);
-  if (std::holds_alternative<std::function<double(double, double)>>(s.problem.above) ||
-      std::holds_alternative<std::function<double(double, double)>>(s.problem.below))
-    tracer.addModes(true);
+  if (isFunction(s.problem.above) || isFunction(s.problem.below)) tracer.addModes(true);
   tracer.addWhole();
   if (s.settings.corrections) tracer.addAureole();
   if (s.hasHotSpot()) tracer.addHotSpot();

@@ -36,7 +36,7 @@ NodeEquation nodeEquation(const Solver::State& s, const BasisRows& rows, const L
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) {
         double &even = equation.even[i * n + j], &odd = equation.odd[i * n + j];
-        s.directionKernel(rows, p, s.ordinates->mu()[i], s.ordinates->mu()[j], even, odd);
+        s.directionKernel(rows, 0, p, s.ordinates->mu()[i], s.ordinates->mu()[j], even, odd);
         even *= weight[j];
         odd *= weight[j];
       }
@@ -76,7 +76,7 @@ NodeEquation nodeEquation(const Solver::State& s, const BasisRows& rows, const L
 }  // namespace
 
 double Solver::residual(int modes) {
-  State& s = *state_;
+  State& s = solved();
   const int n = s.n;
   const auto& mu = s.ordinates->mu();
   using Gauss = boost::math::quadrature::gauss<double, 10>;
@@ -143,7 +143,7 @@ double Solver::residual(int modes) {
           }
         for (int i = 0; i < n; ++i) {
           const double rate = equation.extinction[i] / mu[i], kept = std::exp(-rate * step);
-          const double passed = -std::expm1(-rate * step);
+          const double passed = std::max(-std::expm1(-rate * step), 1e-3);
           largest = std::max({largest, std::abs(top_down[i]), std::abs(bottom_up[i]), std::abs(source_down[i]),
                               std::abs(source_up[i])});
           worst = std::max({worst, std::abs(bottom_down[i] - kept * top_down[i] - add_down[i]) / passed,

@@ -8,8 +8,8 @@ namespace sunfleck::pp {
 struct SlabCase {
   double asymmetry = 0.;  // g [1], -1 < g < 1
   double albedo = 0.;     // omega [1], 0 .. 1
-  double thickness = 1.;  // optical [1], above 0; may be infinite
-  double mu0 = 1.;        // |cos| of the beam to the normal [1], (0, 1]
+  double thickness = 1.;  // optical [1], 1e-100 .. 1e100, or infinite
+  double mu0 = 1.;        // |cos| of the beam to the normal [1], 1e-100 .. 1
 };
 
 // Relative to the flux that arrives.

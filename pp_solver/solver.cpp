@@ -57,9 +57,19 @@ Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 
+Solver::State& Solver::solved() const {
+  require(state_->solved, "problems solved", 0, "one before its light is asked for");
+  return *state_;
+}
+
 void Solver::solve(const Problem& problem) {
-  requireSolvable(problem);
   State& s = *state_;
+  s.solved = false;
+  requireSolvable(problem);
+  for (const Layer& layer : problem.layers)
+    require(!s.settings.collocation || layer.emission_top == layer.emission_bottom, "emission_bottom",
+            layer.emission_bottom, "emission_top with collocation");
+  s.dropLeafTables(problem);
   s.problem = problem;
   s.mu0 = problem.beam ? problem.beam->mu0 : 1.;
   s.beam = problem.beam ? problem.beam->irradiance : 0.;
@@ -87,7 +97,7 @@ void Solver::solve(const Problem& problem) {
 }
 
 double Solver::incident() const {
-  const State& s = *state_;
+  const State& s = solved();
   double flux = s.mu0 * s.beam;
   for (int i = 0; i < s.n; ++i) {
     const double mu = s.ordinates->mu()[i], weight = 2. * kPi * s.ordinates->weight()[i] * mu;
@@ -98,14 +108,14 @@ double Solver::incident() const {
 }
 
 double Solver::reflectance() const {
-  const State& s = *state_;
+  const State& s = solved();
   double up = 0.;
   for (int i = 0; i < s.n; ++i) up += s.basis.flat[i] * (s.stack.s_top[i] - s.stack.d_top[i]);
   return kPi * up / incident() + s.hot_spot.reflected;
 }
 
 double Solver::transmittance() const {
-  const State& s = *state_;
+  const State& s = solved();
   if (std::isinf(s.depth)) return 0.;
   double down = 0.;
   for (int i = 0; i < s.n; ++i) down += s.basis.flat[i] * (s.stack.s_bottom[i] + s.stack.d_bottom[i]);
@@ -114,12 +124,12 @@ double Solver::transmittance() const {
 }
 
 double Solver::direct() const {
-  const State& s = *state_;
+  const State& s = solved();
   return s.beam == 0. || std::isinf(s.depth) ? 0. : s.beam * s.mu0 * s.trueBeam(s.depth) / incident();
 }
 
 double Solver::absorptance() const {
-  const State& s = *state_;
+  const State& s = solved();
   double absorbed = 0.;
   for (std::size_t p = 0; p < s.layers.size(); ++p) {
     const ScaledLayer& layer = s.layers[p];
@@ -138,7 +148,7 @@ double Solver::absorptance() const {
 }
 
 Fluxes Solver::fluxes(double depth) const {
-  const State& s = *state_;
+  const State& s = solved();
   const auto [p, inside] = s.placeAt(depth);
   const ScaledLayer& layer = s.layers[p];
   const LayerRows& row = s.stack.layer[p];
@@ -160,6 +170,11 @@ Fluxes Solver::fluxes(double depth) const {
   fluxes.up = kPi * (sum - difference + planck) - drift;
   fluxes.down = kPi * (sum + difference + planck) + drift + (s.mu0 * scaled - direct);
   fluxes.direct = direct;
+  if (s.hasHotSpot() && depth == 0.) fluxes.up += s.hot_spot.reflected * incident();
+  if (s.hasHotSpot() && inside == layer.true_thickness) {
+    fluxes.down += s.hot_spot.transmitted * incident();
+    fluxes.up += s.problem.ground.albedo * s.hot_spot.transmitted * incident();
+  }
   fluxes.mean_intensity = 0.5 * mean + planck + scaled / (4. * kPi);
   return fluxes;
 }

@@ -32,7 +32,8 @@ struct Fluxes {
 };
 
 // The exact solution by discrete ordinates. An object keeps its memory from one problem to the next: solving another of
-// the same size allocates nothing. Objects do not share anything that changes: one for each thread.
+// the same size, of particles on a Lambertian ground, allocates nothing. Objects do not share anything that changes:
+// one for each thread.
 class Solver {
  public:
   explicit Solver(Settings settings = {});  // throws InvalidInput
@@ -40,10 +41,12 @@ class Solver {
   Solver(Solver&&) noexcept;
   Solver& operator=(Solver&&) noexcept;
 
-  // Solves the azimuth mean: all that fluxes need. Throws InvalidInput for a problem that is none (requireSolvable).
+  // Solves the azimuth mean: all that fluxes need. Throws InvalidInput for a problem that is none (requireSolvable) and
+  // for functions that return what is no radiance or no reciprocal BRDF; there is then no solution to ask.
   void solve(const Problem& problem);
 
-  // What follows speaks of the problem solved last.
+  // What follows speaks of the problem solved last, and throws InvalidInput where there is none. A hot spot is in the
+  // shares, in the fluxes at the top and at the bottom and in the radiance at the top; within the layer it is left out.
   double incident() const;  // flux that arrives at the top, and from below [flux]; without any, shares are not defined
   double reflectance() const;    // flux up at the top over `incident` [1]
   double transmittance() const;  // flux down at the bottom, direct beam included, over `incident` [1]; 0 if infinite
@@ -55,7 +58,7 @@ class Solver {
 
   // Radiance of diffuse light (the direct beam left out) at every depth, in every direction:
   // result[(d * mus.size() + i) * phis.size() + j]. Solves as many azimuth modes as needed.
-  //   mus   cos to the downward vertical [1], [-1, 1], not 0
+  //   mus   cos to the downward vertical [1], 1e-100 <= |mu| <= 1
   //   phis  azimuth of travel [rad]
   void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
                  std::span<double> result);
@@ -71,6 +74,7 @@ class Solver {
   struct State;
 
  private:
+  State& solved() const;
   std::unique_ptr<State> state_;
 };
 

@@ -68,12 +68,6 @@ inline void oneLayer(const BasisRows& basis, StackRows& stack) {
   addRows<S>(rows(stack.d_bottom), rows(layer.y_hat), numbers<S>(rows(layer.v_bottom)), n, width);
 }
 
-// result += matrix row, for a symmetric matrix (both parts stored).
-template <typename S>
-inline void addProduct(Vec* result, const Vec* matrix, const Vec* row, int n, int width) {
-  addRows<S>(result, matrix, numbers<S>(row), n, width);
-}
-
 // (P7) Any stack of layers, by elimination from the ground upward. All that lies below a level answers the light there
 // by D = Z S + z (hats; Z symmetric: an admittance, 1 for black, 0 for a perfect mirror). Through a layer,
 //     Z' = Yt + G - 2 G R (1 - t s + 2 R^T G R)^-1 R^T G,   Yt = Y t Y^T, G = Z + Yt, R = X s^1/2,
@@ -100,7 +94,7 @@ inline void throughLayer(const BasisRows& basis, const StackRows& stack, LayerRo
   }
   Vec* remainder = rows(layer.remainder);
   for (int k = 0; k < width; ++k) remainder[k] = row_below[k] - d_bottom[k];
-  addProduct<S>(remainder, z_below, s_bottom, n, width);
+  addRows<S>(remainder, z_below, numbers<S>(s_bottom), n, width);
 
   gram<S>(z_above, y, numbers<S>(rows(layer.t)), weighted, n, width);
   mirror<S>(z_above, n, width);
@@ -151,7 +145,7 @@ inline void downLayer(const BasisRows& basis, const StackRows& stack, LayerRows&
     d_hat[k] = row_top[k] - d_top[k];
     s_top[k] = s_hat[k] - s_top[k];
   }
-  addProduct<S>(d_hat, z_top, s_hat, n, width);
+  addRows<S>(d_hat, z_top, numbers<S>(s_hat), n, width);
   project<S>(numbers<S>(rows(layer.u_top)), y, s_top, n, width);
   project<S>(numbers<S>(rows(layer.v_top)), x, d_hat, n, width);
   if (layer.infinite) {
@@ -169,8 +163,6 @@ inline void downLayer(const BasisRows& basis, const StackRows& stack, LayerRows&
     v[k] = 4. * through / (twice * twice) * rows(layer.u_top)[k] / s_root - 2. * s_root * v[k];
     modes[k] = s_root;
   }
-  if constexpr (!kWide<S>)  // padding: 0 / 0 above
-    for (int j = n; j < width * kLanes; ++j) numbers<double>(v)[j] = 0.;
   const S* inverse = numbers<S>(rows(layer.factor_inverse));
   solveLower<S>(rows(layer.factor), inverse, v, n, width);
   solveUpper<S>(rows(layer.factor), inverse, v, n, width);
@@ -180,7 +172,7 @@ inline void downLayer(const BasisRows& basis, const StackRows& stack, LayerRows&
     d_hat[k] = row_bottom[k] - d_bottom[k];
   }
   addRows<S>(s_hat, x, numbers<S>(rows(layer.u_bottom)), n, width);
-  addProduct<S>(d_hat, z_bottom, s_hat, n, width);
+  addRows<S>(d_hat, z_bottom, numbers<S>(s_hat), n, width);
   project<S>(numbers<S>(rows(layer.v_bottom)), x, d_hat, n, width);
 }
 
@@ -217,7 +209,7 @@ inline void layerStack(const BasisRows& basis, StackRows& stack, Prepare prepare
     downLayer<S>(basis, stack, stack.layer[p], z + p * square, offset + p * width, z + (p + 1) * square,
                  offset + (p + 1) * width, s);
   for (int k = 0; k < width; ++k) rows(stack.d_bottom)[k] = offset_ground[k];
-  addProduct<S>(rows(stack.d_bottom), z_ground, s, n, width);
+  addRows<S>(rows(stack.d_bottom), z_ground, numbers<S>(s), n, width);
 }
 
 }  // namespace sunfleck::pp::SUNFLECK_ISA

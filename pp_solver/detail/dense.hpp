@@ -46,7 +46,7 @@ inline S rowProduct(const Vec* a, const Vec* b, int n) {
   }
 }
 
-// c[i] = scale * sum over j < inner of a(i, j) b[j] for rows i < rows; a(i, j) = a[i * row_step + j * inner_step].
+// c[i] = sum over j < inner of a(i, j) b[j] for rows i < rows; a(i, j) = a[i * row_step + j * inner_step].
 template <typename S, int kRows, int kColumns>
 inline void multiplyBlock(Vec* c, const S* a, const Vec* b, int inner, int width, int row_step, int inner_step) {
   Vec sum[kRows][kColumns]{};

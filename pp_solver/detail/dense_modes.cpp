@@ -54,6 +54,9 @@ void denseModes(const BasisRows& basis, LayerRows& row, const DenseMedium& mediu
     c = medium.albedo * c + medium.loss * absorbing;
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> modes(c);
+  // Rounding of the largest eigenvalue is 1e-16 of it; a negative one beyond that lets light grow without bound.
+  require(modes.eigenvalues()[0] >= -1e-12 * modes.eigenvalues()[n - 1], "streams", 2 * n,
+          "more, or without collocation: they do not carry this phase function");
   const Matrix vectors = turned * modes.eigenvectors();
   const Matrix x = lower * vectors, y = lower.transpose().triangularView<Eigen::Upper>().solve(vectors);
   for (int j = 0; j < n; ++j) {

@@ -7,7 +7,7 @@ namespace sunfleck::pp::detail {
 
 // Light along one direction within one layer. Rows as in stack.hpp.
 struct View {
-  const double *even, *odd;  // how the direction receives light, in the basis
+  const double *even, *odd;  // how the direction receives light, in the space of the layer's x and y
   const double* rate;        // extinction per depth along the view, times 1 / mu [1 per lane]
   int levels;
   const double* depth;  // [levels] below the layer's top
@@ -25,8 +25,7 @@ struct KernelPath {
 };
 
 struct Kernel {
-  const char* name;  // of the instruction set
-  int lanes;         // numbers in a vector
+  int lanes;  // numbers in a vector
   KernelPath single, wide;
 };
 

@@ -55,10 +55,7 @@ constexpr detail::KernelPath path() {
 
 }  // namespace
 
-#define SUNFLECK_TEXT_OF(name) #name
-#define SUNFLECK_TEXT(name) SUNFLECK_TEXT_OF(name)
 extern const detail::Kernel the_kernel;
-const detail::Kernel the_kernel{
-    .name = SUNFLECK_TEXT(SUNFLECK_ISA), .lanes = kLanes, .single = path<double>(), .wide = path<Vec>()};
+constinit const detail::Kernel the_kernel{.lanes = kLanes, .single = path<double>(), .wide = path<Vec>()};
 
 }  // namespace sunfleck::pp::SUNFLECK_ISA

@@ -89,10 +89,9 @@ BasisRows::BasisRows(const Ordinates& ordinates, int first_mode, bool successive
 }
 
 void shape(StackRows& stack, const BasisRows& basis, int layers) {
-  const bool same = stack.basis != nullptr && stack.basis->n == basis.n && stack.basis->lanes == basis.lanes &&
-                    stack.layers == layers;
-  stack.basis = &basis;
-  if (same) return;
+  if (stack.n == basis.n && stack.lanes == basis.lanes && stack.layers == layers) return;
+  stack.n = basis.n;
+  stack.lanes = basis.lanes;
   stack.layers = layers;
   stack.memory.clear();
   stack.layers_held.resize(layers);

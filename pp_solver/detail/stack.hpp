@@ -71,16 +71,17 @@ struct LayerRows {
 };
 
 struct StackRows {
-  const BasisRows* basis = nullptr;
-  int layers = 0;
+  int n = 0, lanes = 0, layers = 0;
   LayerRows* layer = nullptr;  // no std::vector: code of an instruction set must not share the library's templates
   double* top_in;              // 2 sqrt(w mu) I+ that arrives at the top: row over the nodes
   double* bottom_in;           // 2 sqrt(w mu) I- that leaves the ground by itself, for a black ground
   bool black = true;
-  double *ground_matrix, *ground_row;           // else d_hat = matrix s_hat + row at the bottom
-  double *s_top, *d_top, *s_bottom, *d_bottom;  // hats of S and D at the ends of the stack, rows over the nodes
-  double *admittance, *offset;  // d_hat = matrix s_hat + row at the top of each layer, and of the ground
-  double* scratch;              // 4 n + 12 rows
+  double *ground_matrix = nullptr, *ground_row = nullptr;  // else d_hat = matrix s_hat + row at the bottom
+  double *s_top = nullptr, *d_top = nullptr, *s_bottom = nullptr,
+         *d_bottom = nullptr;  // hats of S and D at the ends of the stack, rows over the nodes
+  double *admittance = nullptr,
+         *offset = nullptr;   // d_hat = matrix s_hat + row at the top of each layer, and of the ground
+  double* scratch = nullptr;  // 4 n + 12 rows
   RowMemory memory;
   std::vector<LayerRows> layers_held;
 };

@@ -1,6 +1,5 @@
 #include "pp_solver/detail/state.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -62,6 +61,10 @@ double Solver::State::skyMode(const Sky& sky, int m, double mu, bool sine) const
 double Solver::State::scaledBeam(std::size_t index, double depth_in_layer) const {
   const ScaledLayer& layer = layers[index];
   return std::exp(-(layer.beam_path + layer.scale * layer.projection * depth_in_layer) / mu0);
+}
+
+double Solver::State::beamOnGround() const {
+  return beam * mu0 * scaledBeam(layers.size() - 1, layers.back().true_thickness);
 }
 
 double Solver::State::trueBeam(double depth_below_top) const {
@@ -139,10 +142,10 @@ void Solver::State::fillDense(const BasisRows& rows, LayerRows& row, std::size_t
   } else {
     const double omega = m == 0 && medium.albedo > 0. ? medium.albedo : 1.;
     for (int i = 0; i < n; ++i) {
-      directionKernel(rows, index, ordinates->mu()[i], mu0, even[i], odd[i]);
+      directionKernel(rows, 0, index, ordinates->mu()[i], mu0, even[i], odd[i]);
       for (int j = 0; j < n; ++j) {
         double e, o;
-        directionKernel(rows, index, ordinates->mu()[i], ordinates->mu()[j], e, o);
+        directionKernel(rows, 0, index, ordinates->mu()[i], ordinates->mu()[j], e, o);
         medium.even.push_back(e / omega);
         medium.odd.push_back(o);
       }
@@ -155,155 +158,20 @@ void Solver::State::fillDense(const BasisRows& rows, LayerRows& row, std::size_t
   denseModes(rows, row, medium, weight);
 }
 
-void Solver::State::directionKernel(const BasisRows& rows, std::size_t index, double mu, double other, double& even,
-                                    double& odd) const {
-  const int m = static_cast<int>(rows.mode[0]);
-  double now = legendreStart(rows, 0, mu), before = 0., now2 = legendreStart(rows, 0, other), before2 = 0.;
+void Solver::State::directionKernel(const BasisRows& rows, int lane, std::size_t index, double mu, double other,
+                                    double& even, double& odd) const {
+  const int m = static_cast<int>(rows.mode[lane]), lanes = rows.lanes;
+  double now = legendreStart(rows, lane, mu), before = 0., now2 = legendreStart(rows, lane, other), before2 = 0.;
   even = odd = 0.;
   for (int j = 0; m + j < settings.streams; ++j) {
-    (j % 2 == 0 ? even : odd) += rows.norm[j] * rows.norm[j] * layers[index].scatter[m + j] * now * now2;
-    const double next = rows.up[j] * mu * now - rows.down[j] * before;
-    const double next2 = rows.up[j] * other * now2 - rows.down[j] * before2;
+    const double norm = rows.norm[j * lanes + lane], a = rows.up[j * lanes + lane], b = rows.down[j * lanes + lane];
+    (j % 2 == 0 ? even : odd) += norm * norm * layers[index].scatter[m + j] * now * now2;
+    const double next = a * mu * now - b * before, next2 = a * other * now2 - b * before2;
     before = now;
     now = next;
     before2 = now2;
     now2 = next2;
   }
-}
-
-// The ground and what arrives from outside, as hats: sqrt(w mu) times radiance.
-void Solver::State::fillGround(const BasisRows& rows, StackRows& stack_rows, bool sine) {
-  const int lanes = rows.lanes;
-  const Ground& ground = problem.ground;
-  const bool infinite = std::isinf(depth);
-  const double arriving =
-      sine || infinite ? 0. : beam * mu0 * scaledBeam(layers.size() - 1, layers.back().true_thickness);
-  const bool shaped = ground.brdf && !infinite;
-  stack_rows.black = infinite || !(shaped || ground.albedo > 0.);
-  for (int lane = 0; lane < lanes; ++lane) {
-    const int m = static_cast<int>(rows.mode[lane]);
-    const bool flat_mode = m == 0 && !sine;
-    Eigen::VectorXd source(n), flat(n);
-    for (int i = 0; i < n; ++i) {
-      const double mu = ordinates->mu()[i], hat = rows.flat[i * lanes + lane];
-      stack_rows.top_in[i * lanes + lane] = 2. * hat * skyMode(problem.above, m, mu, sine);
-      source[i] = hat * (infinite ? 0. : skyMode(problem.below, m, mu, sine));
-      flat[i] = hat;
-    }
-    if (stack_rows.black) {
-      for (int i = 0; i < n; ++i)
-        stack_rows.bottom_in[i * lanes + lane] =
-            2. * (source[i] + (flat_mode && !infinite ? flat[i] * ground.emission : 0.));
-      continue;
-    }
-    Eigen::MatrixXd matrix;
-    Eigen::VectorXd row;
-    if (!shaped) {
-      // Z = 1 - (2 A / (1 + A)) q q^T exactly, q = sqrt(2 w mu) of length 1
-      const double share = flat_mode ? ground.albedo / (1. + ground.albedo) : 0.;
-      if (flat_mode) source += flat * ((1. - ground.albedo) * ground.emission + ground.albedo * arriving / kPi);
-      matrix = Eigen::MatrixXd::Identity(n, n) - 4. * share * flat * flat.transpose();
-      row = -2. * (source - 2. * share * flat * flat.dot(source));
-    } else {
-      Eigen::MatrixXd reflect = Eigen::MatrixXd::Zero(n, n);
-      if (m < ground.brdf_modes)
-        for (int i = 0; i < n; ++i)
-          for (int j = 0; j < n; ++j)
-            reflect(i, j) =
-                flat[i] * flat[j] * kPi * (m == 0 ? 2. : 1.) * ground.brdf(m, ordinates->mu()[i], ordinates->mu()[j]);
-      reflect = 0.5 * (reflect + reflect.transpose()).eval();
-      if (flat_mode) source += ground.emission * (flat - reflect * flat);
-      if (m < ground.brdf_modes)
-        for (int i = 0; i < n; ++i) source[i] += flat[i] * ground.brdf(m, ordinates->mu()[i], mu0) * arriving;
-      const Eigen::LDLT<Eigen::MatrixXd> solve(Eigen::MatrixXd::Identity(n, n) + reflect);
-      matrix = solve.solve(Eigen::MatrixXd::Identity(n, n) - reflect);
-      matrix = 0.5 * (matrix + matrix.transpose()).eval();
-      row = -2. * solve.solve(source);
-    }
-    for (int i = 0; i < n; ++i) {
-      stack_rows.ground_row[i * lanes + lane] = row[i];
-      for (int j = 0; j < n; ++j) stack_rows.ground_matrix[i * rows.row + j * lanes + lane] = matrix(i, j);
-    }
-  }
-}
-
-double Solver::State::projectionOf(std::size_t index, double mu) const {
-  if (!layers[index].leaves) return 1.;
-  return tables[index]->viewProjection(mu);
-}
-
-void Solver::State::prepareLeaves(std::size_t index) {
-  const LeafAngles& angles = std::get<LeafScattering>(problem.layers[index].medium).angles;
-  tables.resize(layers.size());
-  auto found = std::find_if(leaf_tables.begin(), leaf_tables.end(),
-                            [&](const auto& table) { return table->angles() == angles; });
-  if (found == leaf_tables.end())
-    found =
-        leaf_tables.insert(found, std::make_unique<detail::LeafTables>(angles, ordinates->mu(), ordinates->weight()));
-  tables[index] = found->get();
-  tables[index]->setBeam(mu0);
-  layers[index].projection = tables[index]->beamProjection();
-}
-
-void Solver::State::beamSource(const BasisRows& rows, int lane, std::size_t index, double mu, double& down,
-                               double& up) const {
-  const int m = static_cast<int>(rows.mode[lane]), streams = settings.streams, lanes = rows.lanes;
-  const double amplitude = beam * scaledBeam(index) * (m == 0 ? 1. : 2.) / (4. * kPi);
-  if (layers[index].leaves) {
-    const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
-    const LeafKernel& scattering = tables[index]->beamIntoViews(m);
-    std::vector<double> even(scattering.modulus.size()), odd(scattering.modulus.size());
-    scattering.evenOdd(leaves.reflectance, leaves.transmittance, even, odd);
-    const std::size_t i = tables[index]->viewAt(mu);
-    const double share = amplitude / tables[index]->viewProjection(mu);
-    down = share * (even[i] + odd[i]);
-    up = share * (even[i] - odd[i]);
-    return;
-  }
-  double now = legendreStart(rows, lane, mu), before = 0., now0 = legendreStart(rows, lane, mu0), before0 = 0.;
-  down = up = 0.;
-  for (int j = 0; m + j < streams; ++j) {
-    const double norm = rows.norm[j * lanes + lane], a = rows.up[j * lanes + lane], b = rows.down[j * lanes + lane];
-    const double term = amplitude * norm * norm * layers[index].scatter[m + j] * now * now0;
-    down += term;
-    up += j % 2 == 0 ? term : -term;
-    const double next = a * mu * now - b * before, next0 = a * mu0 * now0 - b * before0;
-    before = now;
-    now = next;
-    before0 = now0;
-    now0 = next0;
-  }
-}
-
-double Solver::State::groundRadiance(const BasisRows& rows, const StackRows& stack_rows, int lane, double mu,
-                                     bool sine) const {
-  if (std::isinf(depth)) return 0.;
-  const int m = static_cast<int>(rows.mode[lane]), lanes = rows.lanes;
-  const Ground& ground = problem.ground;
-  const bool flat_mode = m == 0 && !sine;
-  if (!ground.brdf && !flat_mode) return 0.;
-  const double arriving = sine ? 0. : beam * mu0 * scaledBeam(layers.size() - 1, layers.back().true_thickness);
-  double radiance = 0., albedo = ground.albedo;
-  if (ground.brdf) {
-    albedo = 0.;
-    if (m >= ground.brdf_modes) return flat_mode ? ground.emission : 0.;
-    radiance = arriving * ground.brdf(m, mu, mu0);
-  } else {
-    radiance = albedo * arriving / kPi;
-  }
-  for (int i = 0; i < n; ++i) {
-    const double hat = 0.5 * (stack_rows.s_bottom[i * lanes + lane] + stack_rows.d_bottom[i * lanes + lane]);
-    const double flux = rows.flat[i * lanes + lane] * hat;  // w mu I+
-    const double node = ordinates->mu()[i];
-    if (ground.brdf) {
-      const double f = ground.brdf(m, mu, node);
-      radiance += kPi * (m == 0 ? 2. : 1.) * f * flux;
-      if (flat_mode) albedo += 2. * kPi * f * node * ordinates->weight()[i];
-    } else {
-      radiance += 2. * albedo * flux;
-    }
-  }
-  return radiance + (flat_mode ? (1. - albedo) * ground.emission : 0.);
 }
 
 void Solver::State::solveBundle(const BasisRows& rows, StackRows& stack_rows, bool sine) {
@@ -316,7 +184,7 @@ void Solver::State::solveBundle(const BasisRows& rows, StackRows& stack_rows, bo
 double Solver::State::nodeView(const BasisRows& rows, std::size_t index, double mu, double* even, double* odd) const {
   if (!layers[index].leaves) {
     for (int i = 0; i < n; ++i) {
-      directionKernel(rows, index, mu, ordinates->mu()[i], even[i], odd[i]);
+      directionKernel(rows, 0, index, mu, ordinates->mu()[i], even[i], odd[i]);
       even[i] *= std::sqrt(ordinates->weight()[i]);
       odd[i] *= std::sqrt(ordinates->weight()[i]);
     }

@@ -63,6 +63,7 @@ struct Solver::State {
   // Attenuation of the beam as the scaled medium has it, at the top of layer `index` or at a depth within it.
   double scaledBeam(std::size_t index, double depth_in_layer = 0.) const;
   double trueBeam(double depth_below_top) const;
+  double beamOnGround() const;  // flux, as the scaled medium has it
 
   // The layer at a depth, and the depth within it. The sum of all thicknesses, or what misses it by rounding, is the
   // bottom of the last layer.
@@ -71,6 +72,9 @@ struct Solver::State {
     double inside;
   };
   Place placeAt(double depth_below_top) const;
+
+  // Forgets the tables that the next problem has no use for.
+  void dropLeafTables(const Problem& next);
 
   // Finds or makes the tables of a layer of leaves, and G of the beam.
   void prepareLeaves(std::size_t index);
@@ -86,17 +90,18 @@ struct Solver::State {
   void beamSource(const detail::BasisRows& rows, int lane, std::size_t index, double mu, double& down,
                   double& up) const;
 
-  // E and O of particles between two directions, from N moments.
-  void directionKernel(const detail::BasisRows& rows, std::size_t index, double mu, double other, double& even,
-                       double& odd) const;
+  // E and O of particles between two directions in azimuth mode `lane`, from N moments.
+  void directionKernel(const detail::BasisRows& rows, int lane, std::size_t index, double mu, double other,
+                       double& even, double& odd) const;
 
-  // Radiance that leaves the ground along mu, but for what `below` sends by itself.
+  // Radiance that leaves the ground along mu, but for what `below` sends by itself and the beam by a BRDF.
   double groundRadiance(const detail::BasisRows& rows, const detail::StackRows& stack_rows, int lane, double mu,
                         bool sine) const;
 
  private:
   void fillLayer(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, bool sine);
   void fillDense(const detail::BasisRows& basis_rows, detail::LayerRows& row, std::size_t index, double amplitude);
+  void fillShapedGround(const detail::BasisRows& basis_rows, detail::StackRows& rows, int lane, bool sine);
   void fillGround(const detail::BasisRows& basis_rows, detail::StackRows& rows, bool sine);
 };
 
