@@ -75,6 +75,7 @@ int run(int count, char** arguments) {
   int status = 0;
   apps::addValidate(app, options, status);
   apps::addSlab(app, options, status);
+  apps::addSlabTable(app, options, status);
   apps::addPlant(app, options, status);
   apps::addVoxelize(app, options, status);
   apps::addTrace(app, options, status);
