@@ -78,6 +78,19 @@ refuses "thickness" slab --thickness -1
 refuses "omega" slab --omega 2
 refuses "g = 1" slab --g 1
 refuses "mu0" slab --mu0 0
+refuses "needs -o" slab-table
+refuses "missing.sft" slab-table missing.sft
+refuses "garbage.vdb: is no table of slabs" slab-table garbage.vdb
+refuses ".sft" slab-table -o out.bin
+refuses "--omega" slab-table --omega 1.1 -o out.sft
+refuses "reflectance + transmittance" slab-table --leaves spherical --reflectance 0.9 --transmittance 0.9 -o out.sft
+refuses "--leaves" slab-table --omega 0.5 --leaves spherical -o out.sft
+refuses "max_error" slab-table --max-error 1e-9 -o out.sft
+refuses "there is no folder" slab-table -o nowhere/out.sft
+does "error bound" slab-table --omega 0.5 --max-thickness 1 --max-error 0.3 --streams 8 -o out.sft
+does '"medium": "Henyey-Greenstein particles, omega 0.5, g 0"' slab-table out.sft --json
+head -c 1000 out.sft >cut.sft
+refuses "cut.sft: is cut short" slab-table cut.sft
 refuses "nowhere" voxelize leaf.obj -o nowhere/x.vdb
 refuses "nowhere" render leaf.obj -o nowhere/x.png
 refuses "folder" plant leaf.obj -o folder
