@@ -37,14 +37,15 @@ int runSlab(const SlabOptions& options, const RunOptions& run) {
   for (const SlabModel* model : models) requireCapable(*model, question);
   if (!options.plot.empty()) requireNamed(options.plot, ".svg");
 
+  const double tolerance = options.tolerance.value_or(kTolerance);
   std::vector<ModelAnswer> answers;
   for (const SlabModel* model : models) {
     SlabQuestion asked = question;
     asked.setup.effort.seed = run.seed;
     asked.setup.effort.threads = run.threads;
     if (!model->gives_radiance) asked.mus.clear();
-    const bool choose = options.tolerance && model == &exactSlabModel();
-    answers.push_back({model, choose ? answerWithin(*options.tolerance, *model, asked) : answer(*model, asked)});
+    const bool choose = !options.streams && model == &exactSlabModel();
+    answers.push_back({model, choose ? answerWithin(tolerance, *model, asked) : answer(*model, asked)});
     if (choose) question.setup.settings.streams = answers.back().answer.streams;
     if (interrupted()) return kEndedEarly;
   }
@@ -52,8 +53,7 @@ int runSlab(const SlabOptions& options, const RunOptions& run) {
   if (run.json) {
     text = slabJson(question, answers);
   } else {
-    for (const ModelAnswer& given : answers)
-      text += (text.empty() ? "" : "\n") + slabText(question, given, options.tolerance);
+    for (const ModelAnswer& given : answers) text += (text.empty() ? "" : "\n") + slabText(question, given, tolerance);
   }
   if (!options.plot.empty()) {
     std::vector<const SlabModel*> shown;
@@ -116,14 +116,16 @@ void addSlab(CLI::App& app, RunOptions& run, int& status) {
     names += fmt::format("{}{}: {}", names.empty() ? "" : "; ", model.name, model.label);
   auto* model = options.add("--model", slab->models, "", "Model")->delimiter(',');
   model->description("One or more, such as pp,spp (default pp). " + names);
-  auto* streams =
-      options.add("--streams", slab->streams,
-                  "N, directions of the exact solver over both hemispheres; even, 2 to 256 (default 16)", "Model");
+  auto* streams = options.add(
+      "--streams", slab->streams,
+      "N, directions of the exact solver over both hemispheres; even, 2 to 256 (default: by --tolerance; of "
+      "a batch 32)",
+      "Model");
   streams->check(evenStreams());
   auto* tolerance =
       options.add("--tolerance", slab->tolerance,
                   "Choose N: the smallest of 4, 8, 16 ... 256 whose result differs from the next one's by "
-                  "less than this",
+                  "less than this (default 1e-6)",
                   "Model");
   tolerance->check(numberIn(1e-15, 1., "a number, 1e-15 to 1"));
   options.addFlag("--no-delta-m", slab->no_delta_m, "Cut the phase function's series at N moments, without delta-M",

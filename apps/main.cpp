@@ -23,8 +23,10 @@ constexpr int kWrongInput = 2;
 
 // A user's mistake is told in one line, whatever the message was made of.
 int wrongInput(std::string message) {
-  for (char& c : message)
+  for (char& c : message) {
     if (c == '\n') c = ' ';
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';  // a file's bytes must not command the terminal
+  }
   fmt::print(stderr, "sunfleck: {}\n", message);
   return kWrongInput;
 }

@@ -136,7 +136,8 @@ class Batch {
       const std::string_view line = trimmed(text.substr(0, end));
       text.remove_prefix(std::min(end + 1, text.size()));
       if (number == 1) {
-        if (line != kHeader)
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // as spreadsheets write it
+        if ((line.starts_with(kByteOrderMark) ? line.substr(kByteOrderMark.size()) : line) != kHeader)
           throw InvalidInput(fmt::format("{}:1: \"{}\": must be {}", file_, line.substr(0, 80), kHeader));
         chunk.results = fmt::format("{},reflectance,transmittance,direct\n", kHeader);
       } else if (!line.empty()) {

@@ -39,6 +39,11 @@ double numberAt(std::string_view field, const std::string& where) {
   return *value;
 }
 
+// As spreadsheets write it before the first line.
+void removeByteOrderMark(std::string& line) {
+  if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+}
+
 void removeReturn(std::string& line) {
   if (!line.empty() && line.back() == '\r') line.pop_back();
 }
@@ -50,6 +55,7 @@ std::vector<pp::Layer> readLayers(const std::string& file) {
   std::vector<pp::Layer> layers;
   std::string line;
   std::getline(in, line);
+  removeByteOrderMark(line);
   removeReturn(line);
   if (line != kLayersHeader)
     throw InvalidInput(fmt::format("{}:1: \"{}\": must be {}", file, line.substr(0, 80), kLayersHeader));
@@ -82,6 +88,7 @@ pp::PhaseFunction readMoments(const std::string& file) {
   std::vector<double> moments;
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) {
+    if (number == 1) removeByteOrderMark(line);
     removeReturn(line);
     for (const std::string_view field : fieldsOf(line, ", \t")) {
       if (field.empty()) continue;

@@ -129,7 +129,7 @@ double totalThickness(const SlabQuestion& question) {
 }
 
 pp::Settings exactSettings(const SlabOptions& options) {
-  return {.streams = options.streams.value_or(pp::Settings{}.streams),
+  return {.streams = options.streams.value_or(kBatchStreams),
           .delta_m = !options.no_delta_m,
           .corrections = !options.no_corrections,
           .collocation = options.collocation};
@@ -171,6 +171,7 @@ SlabQuestion slabQuestion(const SlabOptions& options) {
   if (!special) question.setup.homogeneous = slab;
   addDirections(options, question);
   question.residual = options.residual;
+  question.leaf_angles = options.leaves;
   return question;
 }
 

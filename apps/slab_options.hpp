@@ -8,6 +8,9 @@
 
 namespace sunfleck::apps {
 
+inline constexpr int kBatchStreams = 32;
+inline constexpr double kTolerance = 1e-6;
+
 // What `sunfleck slab` is told. Angles are in degrees, as typed.
 struct SlabOptions {
   std::vector<std::string> models{"pp"};
@@ -22,8 +25,8 @@ struct SlabOptions {
   double hot_spot = 0.;                                         // leaf size over canopy height [1]
   double ground_albedo = 0.;                                    // [1]
   std::optional<double> sky;                                    // radiance from above [1/sr]
-  std::optional<int> streams;                                   // 16 unless chosen by the tolerance
-  std::optional<double> tolerance;
+  std::optional<int> streams;       // else chosen by the tolerance; of a batch kBatchStreams
+  std::optional<double> tolerance;  // kTolerance unless there are streams
   bool no_delta_m = false, no_corrections = false, collocation = false, residual = false;
   std::optional<double> paths;  // of Monte Carlo
   std::vector<double> depths, mus, phis;

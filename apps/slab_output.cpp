@@ -40,8 +40,8 @@ std::string fluxTable(const SlabQuestion& question, const SlabAnswer& answer, bo
 
 std::string radianceTable(const SlabQuestion& question, const SlabAnswer& answer) {
   std::string text = fmt::format(
-      "\nDiffuse radiance [1/sr, {}]; mu > 0 travels downward\n{:>12} {:>12}",
-      question.setup.problem.beam ? "per irradiance 1 of a plane that faces the beam" : "in the unit of the sky",
+      "\nDiffuse radiance [{}]; mu > 0 travels downward\n{:>12} {:>12}",
+      question.setup.problem.beam ? "1/sr, per irradiance 1 of a plane that faces the beam" : "unit of the sky's",
       "depth", "mu");
   for (const double phi : question.phis) text += fmt::format(" {:>14}", fmt::format("phi {:g} deg", degrees(phi)));
   text += '\n';
@@ -77,7 +77,7 @@ Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer, bool is_samp
             {"fluxes", std::move(fluxes)},
             {"streams", answer.streams},
             {"seconds", answer.seconds}};
-  if (answer.difference) json["difference"] = *answer.difference;
+  if (answer.difference) json["difference"] = *answer.difference;  // from the next number of streams
   if (answer.residual) json["residual"] = *answer.residual;
   if (answer.standard_errors)
     json["standard_errors"] = {{"reflectance", answer.standard_errors->reflectance},
@@ -88,7 +88,7 @@ Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer, bool is_samp
 
 }  // namespace
 
-std::string slabText(const SlabQuestion& question, const ModelAnswer& given, const std::optional<double>& tolerance) {
+std::string slabText(const SlabQuestion& question, const ModelAnswer& given, double tolerance) {
   const SlabAnswer& answer = given.answer;
   const SlabBudget& budget = answer.budget;
   const std::string effort = given.model->is_sample ? fmt::format("{} paths", question.setup.effort.paths)
@@ -97,9 +97,9 @@ std::string slabText(const SlabQuestion& question, const ModelAnswer& given, con
       fmt::format("{} ({}), {}{:>12.3g} ms\n", given.model->name, given.model->label, effort, 1e3 * answer.seconds);
   if (answer.difference)
     text +=
-        *answer.difference < *tolerance
+        *answer.difference < tolerance
             ? fmt::format("N = {} is within {:.2g} of N = {}\n", answer.streams, *answer.difference, 2 * answer.streams)
-            : fmt::format("the tolerance of {:.2g} is not reached: N = {} is {:.2g} from N = {}\n", *tolerance,
+            : fmt::format("the tolerance of {:.2g} is not reached: N = {} is {:.2g} from N = {}\n", tolerance,
                           answer.streams, *answer.difference, answer.streams / 2);
   const auto line = [&](const char* name, double SlabBudget::*share) {
     text += fmt::format("  {:<14} {:.12f}", name, budget.*share);
@@ -112,6 +112,12 @@ std::string slabText(const SlabQuestion& question, const ModelAnswer& given, con
   line("transmittance", &SlabBudget::transmittance);
   line("  direct", &SlabBudget::direct);
   line("absorptance", &SlabBudget::absorptance);
+  if (const double albedo = question.setup.problem.ground.albedo; albedo > 0.)
+    text += fmt::format("  in the ground  {:.12f}\n", (1. - albedo) * budget.transmittance);
+  if (question.leaf_angles.size() > 0 &&
+      std::get<pp::LeafScattering>(question.setup.problem.layers[0].medium).hot_spot > 0. && !question.depths.empty())
+    text +=
+        "\nthe hot spot is in the shares, the fluxes of both faces and the radiance at the top, not within the layer\n";
   if (!question.depths.empty()) text += fluxTable(question, answer, given.model->is_sample);
   if (!answer.radiances.empty()) text += radianceTable(question, answer);
   if (answer.residual)

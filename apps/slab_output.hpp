@@ -13,7 +13,7 @@ struct ModelAnswer {
 };
 
 // For people: shares, then tables by depth and direction.
-std::string slabText(const SlabQuestion& question, const ModelAnswer& answer, const std::optional<double>& tolerance);
+std::string slabText(const SlabQuestion& question, const ModelAnswer& answer, double tolerance);
 
 // For programs: one object, or for several models {"models": [...]} of objects with a "model" each.
 std::string slabJson(const SlabQuestion& question, const std::vector<ModelAnswer>& answers);

@@ -66,10 +66,18 @@ std::string subtitleOf(const SlabQuestion& question) {
   std::string text;
   if (const auto& slab = question.setup.homogeneous)
     text = fmt::format("omega {:g}, g {:g}, thickness {:g}", slab->albedo, slab->asymmetry, slab->thickness);
-  else
-    text = fmt::format("{} layer{}, thickness {:g}", problem.layers.size(), problem.layers.size() == 1 ? "" : "s",
+  else if (const auto* leaves = std::get_if<pp::LeafScattering>(&problem.layers[0].medium))
+    text = fmt::format("{} leaves, reflectance {:g}, transmittance {:g}, leaf area index {:g}{}", question.leaf_angles,
+                       leaves->reflectance, leaves->transmittance, totalThickness(question),
+                       leaves->hot_spot > 0. ? fmt::format(", hot spot {:g}", leaves->hot_spot) : "");
+  else if (problem.layers.size() == 1)
+    text = fmt::format("omega {:g}, thickness {:g}", std::get<pp::Particles>(problem.layers[0].medium).albedo,
                        totalThickness(question));
+  else
+    text = fmt::format("{} layers, thickness {:g}", problem.layers.size(), totalThickness(question));
   if (problem.beam) text += fmt::format(", mu0 {:g}", problem.beam->mu0);
+  if (const double* sky = std::get_if<double>(&problem.above); sky != nullptr && *sky > 0.)
+    text += fmt::format(", sky {:g}", *sky);
   if (problem.ground.albedo > 0.) text += fmt::format(", ground albedo {:g}", problem.ground.albedo);
   return text + fmt::format("; N = {}", question.setup.settings.streams);
 }
@@ -85,8 +93,8 @@ std::string slabPlot(std::span<const SlabModel* const> models, const SlabQuestio
   depths.erase(repeated.begin(), repeated.end());
 
   const auto& beam = question.setup.problem.beam;
-  RadiancePlot plot{.title = fmt::format("Diffuse radiance in the principal plane [1/sr, per {}{}]",
-                                         beam ? "unit irradiance of the beam" : "unit of the sky",
+  RadiancePlot plot{.title = fmt::format("Diffuse radiance in the principal plane [{}{}]",
+                                         beam ? "1/sr, per unit irradiance of the beam" : "unit of the sky's",
                                          logarithmic ? "; logarithmic" : ""),
                     .subtitle = subtitleOf(question),
                     .logarithmic = logarithmic};

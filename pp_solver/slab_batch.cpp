@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pp_solver/detail/kernel.hpp"
+#include "pp_solver/detail/rounding.hpp"
 #include "pp_solver/detail/scaled_moments.hpp"
 
 namespace sunfleck::pp {
@@ -75,8 +76,8 @@ void solve(const BasisRows& basis, const KernelPath& path, Worker& worker, std::
       if (!infinite) down += basis.flat[at] * (stack.s_bottom[at] + stack.d_bottom[at]);
     }
     const double beam = infinite ? 0. : std::exp(-layer.thickness[lane] / slab.mu0);
-    result[lane] = {.reflectance = std::numbers::pi * up,
-                    .transmittance = std::numbers::pi * down + beam,
+    result[lane] = {.reflectance = detail::withoutRounding(std::numbers::pi * up),
+                    .transmittance = detail::withoutRounding(std::numbers::pi * down + beam),
                     .direct = std::exp(-slab.thickness / slab.mu0)};
   }
 }

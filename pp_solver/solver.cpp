@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/require.hpp"
+#include "pp_solver/detail/rounding.hpp"
 #include "pp_solver/detail/state.hpp"
 
 namespace sunfleck::pp {
@@ -111,7 +112,7 @@ double Solver::reflectance() const {
   const State& s = solved();
   double up = 0.;
   for (int i = 0; i < s.n; ++i) up += s.basis.flat[i] * (s.stack.s_top[i] - s.stack.d_top[i]);
-  return kPi * up / incident() + s.hot_spot.reflected;
+  return detail::withoutRounding(kPi * up / incident() + s.hot_spot.reflected);
 }
 
 double Solver::transmittance() const {
@@ -120,7 +121,7 @@ double Solver::transmittance() const {
   double down = 0.;
   for (int i = 0; i < s.n; ++i) down += s.basis.flat[i] * (s.stack.s_bottom[i] + s.stack.d_bottom[i]);
   const double beam = s.beam * s.mu0 * s.scaledBeam(s.layers.size() - 1, s.layers.back().true_thickness);
-  return (kPi * down + beam) / incident() + s.hot_spot.transmitted;
+  return detail::withoutRounding((kPi * down + beam) / incident() + s.hot_spot.transmitted);
 }
 
 double Solver::direct() const {
@@ -167,8 +168,9 @@ Fluxes Solver::fluxes(double depth) const {
   const double drift = 2. * kPi * row.planck_drift[0] * slope;
   const double scaled = s.beam * s.scaledBeam(p, inside), direct = s.beam * s.mu0 * s.trueBeam(depth);
   Fluxes fluxes;
-  fluxes.up = kPi * (sum - difference + planck) - drift;
-  fluxes.down = kPi * (sum + difference + planck) + drift + (s.mu0 * scaled - direct);
+  fluxes.up = detail::withoutRounding(kPi * (sum - difference + planck) - drift, std::abs(sum) + std::abs(difference));
+  fluxes.down = detail::withoutRounding(kPi * (sum + difference + planck) + drift + (s.mu0 * scaled - direct),
+                                        std::abs(sum) + std::abs(difference) + s.mu0 * scaled);
   fluxes.direct = direct;
   if (s.hasHotSpot() && depth == 0.) fluxes.up += s.hot_spot.reflected * incident();
   if (s.hasHotSpot() && inside == layer.true_thickness) {

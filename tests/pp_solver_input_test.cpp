@@ -105,7 +105,27 @@ TEST(Input, Ground) {
     expectProblemRefused("ground", [=](pp::Problem& p) { p.ground.albedo = albedo; });
   for (const double emission : {-1., kNan, kInfinity})
     expectProblemRefused("ground", [=](pp::Problem& p) { p.ground.emission = emission; });
-  expectProblemRefused("brdf_modes", [](pp::Problem& p) { p.ground.brdf_modes = -1; });
+  const auto shape = [](auto function, int modes) {
+    return [=](pp::Problem& p) { p.ground = {.brdf = function, .brdf_modes = modes}; };
+  };
+  const auto lambert = [](int m, double, double) { return m == 0 ? 0.1 : 0.; };
+  expectProblemRefused("brdf_modes", shape(lambert, 0));
+  expectProblemRefused("albedo", [&](pp::Problem& p) {
+    shape(lambert, 1)(p);
+    p.ground.albedo = 0.2;
+  });
+  // What only the solver can see
+  const auto expectSolverRefuses = [&](const std::string& field, auto function) {
+    pp::Problem problem = threeLayers(0.6);
+    shape(function, 1)(problem);
+    pp::Solver solver;
+    expectRefused(field, [&] { solver.solve(problem); });
+    expectRefused("solved", [&] { solver.reflectance(); });
+  };
+  expectSolverRefuses("BRDF", [](int, double, double) { return kNan; });
+  expectSolverRefuses("BRDF", [](int, double, double) { return -0.1; });
+  expectSolverRefuses("exchanged", [](int, double mu, double) { return 0.1 * mu; });
+  expectSolverRefuses("albedo", [](int, double, double) { return 1.; });
 }
 
 TEST(Input, Settings) {

@@ -192,6 +192,44 @@ TEST(P8_Radiance, HasTheFluxesOfTheSolution) {
   }
 }
 
+TEST(P8_Radiance, LosesNoModeOfGroundOrSky) {
+  // A ground whose only azimuth mode beside the mean is the fourth, under isotropic scattering; seen through a thin
+  // layer it is the BRDF itself times the light that arrives.
+  Problem problem = slab(0., 0.5, 1e-6, 0.6);
+  problem.ground.brdf = [](int mode, double, double) { return mode == 0 ? 0.2 : mode == 4 ? 0.1 : 0.; };
+  problem.ground.brdf_modes = 5;
+  Solver solver({.streams = 16});
+  solver.solve(problem);
+  for (const double phi : {0., 0.4, 2.})
+    EXPECT_NEAR(solver.radiance(0., -0.5, phi), 0.6 * (0.2 + 0.1 * std::cos(4. * phi)), 1e-5);  // a few thicknesses
+  // A sky with one mode far up, scattered back by a layer that scatters it: the same turned by a period of it.
+  Problem lit = slab(0.9, 0.9, 1., 1.);
+  lit.beam.reset();
+  lit.above = [](double, double phi) { return 1. + std::cos(9. * phi + 0.3); };
+  solver.solve(lit);
+  const double there = solver.radiance(1., 0.5, 0.2),
+               turned = solver.radiance(1., 0.5, 0.2 + 2. * std::numbers::pi / 9.);
+  EXPECT_NEAR(there, turned, 1e-13);
+  const double half = solver.radiance(1., 0.5, 0.2 + std::numbers::pi / 9.);
+  const double unscattered = std::exp(-1. / 0.5) * 2. * std::cos(9. * 0.2 + 0.3);
+  EXPECT_GT(std::abs(there - half - unscattered), 1e-3);  // scattered light has the mode too
+}
+
+TEST(P8_Radiance, MayBeAskedOfParticlesAndLeavesInTurn) {
+  Solver solver({.streams = 8});
+  Problem particles = slab(0.5, 0.9, 1., 0.6), leaves = particles;
+  leaves.layers[0].medium = LeafScattering{.reflectance = 0.4, .transmittance = 0.4};
+  std::vector<double> values;
+  for (int turn = 0; turn < 2; ++turn)
+    for (const Problem& problem : {particles, leaves}) {
+      solver.solve(problem);
+      values.push_back(solver.radiance(0.5, -0.4, 1.));
+    }
+  EXPECT_EQ(values[0], values[2]);
+  EXPECT_EQ(values[1], values[3]);
+  EXPECT_NE(values[0], values[1]);
+}
+
 TEST(P9_Moments, KeepEnergyAndLeaveNoFluxNegative) {
   for (const double asymmetry : {-0.999, -0.95, 0.95, 0.999})
     for (const int streams : {2, 4, 8, 32})

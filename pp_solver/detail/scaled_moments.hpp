@@ -21,7 +21,8 @@ inline double scaleMoments(double albedo, const double* chi, int streams, bool d
     double moment = chi[l] - peak;
     if (spread > 0.) {
       const double part = static_cast<double>(l) / streams;
-      const double fallen = (1. - cusp) * std::expm1(-3. * part * part) - cusp * part;
+      const double fallen =
+          (1. - cusp) * std::expm1(-3. * part * part) + cusp * ((1. - part) * (1. - l / (streams + 1.)) - 1.);
       moment += (l % 2 == 0 ? spread : -spread) * fallen;
     }
     scatter[l * stride] = share * moment;

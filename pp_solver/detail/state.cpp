@@ -174,6 +174,83 @@ void Solver::State::directionKernel(const BasisRows& rows, int lane, std::size_t
   }
 }
 
+double Solver::State::projectionOf(std::size_t index, double mu) const {
+  if (!layers[index].leaves) return 1.;
+  return tables[index]->viewProjection(mu);
+}
+
+void Solver::State::dropLeafTables(const Problem& next) {
+  std::erase_if(leaf_tables, [&](const auto& table) {
+    return std::ranges::none_of(next.layers, [&](const Layer& layer) {
+      const auto* leaves = std::get_if<LeafScattering>(&layer.medium);
+      return leaves != nullptr && leaves->angles == table->angles();
+    });
+  });
+}
+
+void Solver::State::prepareLeaves(std::size_t index) {
+  const LeafAngles& angles = std::get<LeafScattering>(problem.layers[index].medium).angles;
+  tables.resize(layers.size());
+  auto found = std::find_if(leaf_tables.begin(), leaf_tables.end(),
+                            [&](const auto& table) { return table->angles() == angles; });
+  if (found == leaf_tables.end())
+    found =
+        leaf_tables.insert(found, std::make_unique<detail::LeafTables>(angles, ordinates->mu(), ordinates->weight()));
+  tables[index] = found->get();
+  tables[index]->setBeam(mu0);
+  layers[index].projection = tables[index]->beamProjection();
+}
+
+void Solver::State::beamSource(const BasisRows& rows, int lane, std::size_t index, double mu, double& down,
+                               double& up) const {
+  const int m = static_cast<int>(rows.mode[lane]);
+  const double amplitude = beam * scaledBeam(index) * (m == 0 ? 1. : 2.) / (4. * kPi);
+  if (layers[index].leaves) {
+    const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);
+    const LeafKernel& scattering = tables[index]->beamIntoViews(m);
+    std::vector<double> even(scattering.modulus.size()), odd(scattering.modulus.size());
+    scattering.evenOdd(leaves.reflectance, leaves.transmittance, even, odd);
+    const std::size_t i = tables[index]->viewAt(mu);
+    const double share = amplitude / tables[index]->viewProjection(mu);
+    down = share * (even[i] + odd[i]);
+    up = share * (even[i] - odd[i]);
+    return;
+  }
+  double even, odd;
+  directionKernel(rows, lane, index, mu, mu0, even, odd);
+  down = amplitude * (even + odd);
+  up = amplitude * (even - odd);
+}
+
+double Solver::State::groundRadiance(const BasisRows& rows, const StackRows& stack_rows, int lane, double mu,
+                                     bool sine) const {
+  if (std::isinf(depth)) return 0.;
+  const int m = static_cast<int>(rows.mode[lane]), lanes = rows.lanes;
+  const Ground& ground = problem.ground;
+  const bool flat_mode = m == 0 && !sine;
+  if (!ground.brdf && !flat_mode) return 0.;
+  double radiance = 0., albedo = ground.albedo;
+  if (ground.brdf) {
+    albedo = 0.;
+    if (m >= ground.brdf_modes) return 0.;
+  } else {
+    radiance = albedo * beamOnGround() / kPi;
+  }
+  for (int i = 0; i < n; ++i) {
+    const double hat = 0.5 * (stack_rows.s_bottom[i * lanes + lane] + stack_rows.d_bottom[i * lanes + lane]);
+    const double flux = rows.flat[i * lanes + lane] * hat;  // w mu I+
+    const double node = ordinates->mu()[i];
+    if (ground.brdf) {
+      const double f = ground.brdf(m, mu, node);
+      radiance += kPi * (m == 0 ? 2. : 1.) * f * flux;
+      if (flat_mode) albedo += 2. * kPi * f * node * ordinates->weight()[i];
+    } else {
+      radiance += 2. * albedo * flux;
+    }
+  }
+  return radiance + (flat_mode ? (1. - albedo) * ground.emission : 0.);
+}
+
 void Solver::State::solveBundle(const BasisRows& rows, StackRows& stack_rows, bool sine) {
   detail::shape(stack_rows, rows, static_cast<int>(layers.size()));
   for (std::size_t p = 0; p < layers.size(); ++p) fillLayer(rows, stack_rows.layer[p], p, sine);

@@ -18,8 +18,9 @@ namespace {
 constexpr double kX = 330., kY = 345., kRadius = 225.;  // centre and outermost ring of the polar panel
 constexpr double kPolarWidth = 660., kMapWidth = 330., kHeight = 632.;
 constexpr double kDegree = std::numbers::pi / 180.;
-constexpr std::array kColours{"#1f77b4", "#d95f02", "#1b9e77", "#7b3294", "#b2182b", "#666666"};
-constexpr std::array kDashes{"", "7 4", "2 3", "9 3 2 3", "1 5"};
+constexpr std::array kColours{"#1f77b4", "#d95f02", "#1b9e77", "#7b3294", "#b2182b", "#666666",
+                              "#e6ab02", "#17becf", "#e377c2", "#8c564b", "#9acd32", "#000080"};
+constexpr std::array kDashes{"", "7 4", "2 3", "9 3 2 3", "1 5", "12 3", "5 2 1 2 1 2"};
 
 // Where light that travels at `angle` from the downward vertical, over azimuth 0 to the right, is drawn.
 struct Place {

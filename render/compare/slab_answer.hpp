@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "render/compare/slab_models.hpp"
@@ -14,6 +15,7 @@ struct SlabQuestion {
   std::vector<double> mus;   // cos to the downward vertical [1]; none: no radiance is asked
   std::vector<double> phis;  // azimuth of travel [rad]
   bool residual = false;
+  std::string leaf_angles;  // of a layer of leaves, for people
 };
 
 struct SlabAnswer {
