@@ -77,10 +77,9 @@ inline void throughLayer(const BasisRows& basis, const StackRows& stack, LayerRo
                          const Vec* row_below, Vec* z_above, Vec* row_above) {
   const int n = basis.n, width = rowWidth<S>(n), square = n * width;
   const int stride = width * perVec<S>();
-  Vec* scratch = rows(stack.scratch);
-  Vec *s_top = scratch, *d_top = s_top + width, *s_bottom = d_top + width, *d_bottom = s_bottom + width,
-      *modes = d_bottom + width, *work = modes + 2 * width, *weighted = work + 2 * width, *product = weighted + square,
-      *transposed = product + square, *gamma = transposed + square;
+  Vec *s_top = rows(layer.ends), *d_top = s_top + width, *s_bottom = d_top + width, *d_bottom = s_bottom + width;
+  Vec *modes = rows(stack.scratch), *work = modes + 2 * width, *weighted = work + 2 * width,
+      *product = weighted + square, *transposed = product + square, *gamma = transposed + square;
   const Vec *x = rows(layer.x_hat), *y = rows(layer.y_hat);
   particular<S>(basis, layer, modes, s_top, d_top, s_bottom, d_bottom);
   if (layer.infinite) {
@@ -136,17 +135,15 @@ template <typename S>
 inline void downLayer(const BasisRows& basis, const StackRows& stack, LayerRows& layer, const Vec* z_top,
                       const Vec* row_top, const Vec* z_bottom, const Vec* row_bottom, Vec* s_hat) {
   const int n = basis.n, width = rowWidth<S>(n);
-  Vec* scratch = rows(stack.scratch);
-  Vec *s_top = scratch, *d_top = s_top + width, *s_bottom = d_top + width, *d_bottom = s_bottom + width,
-      *modes = d_bottom + width, *d_hat = modes + 2 * width, *v = d_hat + width;
+  const Vec *s_top = rows(layer.ends), *d_top = s_top + width, *s_bottom = d_top + width, *d_bottom = s_bottom + width;
+  Vec *modes = rows(stack.scratch), *d_hat = modes + width, *v = d_hat + width, *homogeneous = v + width;
   const Vec *x = rows(layer.x_hat), *y = rows(layer.y_hat);
-  particular<S>(basis, layer, modes, s_top, d_top, s_bottom, d_bottom);
   for (int k = 0; k < width; ++k) {
     d_hat[k] = row_top[k] - d_top[k];
-    s_top[k] = s_hat[k] - s_top[k];
+    homogeneous[k] = s_hat[k] - s_top[k];
   }
   addRows<S>(d_hat, z_top, numbers<S>(s_hat), n, width);
-  project<S>(numbers<S>(rows(layer.u_top)), y, s_top, n, width);
+  project<S>(numbers<S>(rows(layer.u_top)), y, homogeneous, n, width);
   project<S>(numbers<S>(rows(layer.v_top)), x, d_hat, n, width);
   if (layer.infinite) {
     for (int k = 0; k < width; ++k) {

@@ -7,9 +7,9 @@ namespace sunfleck::pp::detail {
 
 // (P9) Moments as N directions can carry them (delta-M, Wiscombe 1977): the share f of the scattering that goes nearly
 // straight on counts as not scattered. A backward peak too sharp for N moments is spread: the l-th moment of the
-// unresolved part f falls as e^-3(l/N)^2 while f is small, which is close, and as 1 - l / N where it is most of the
-// peak, which lets no flux become negative (measured: the former fails from f = 0.65 on). Writes the scaled omega chi_l
-// to scatter[l * stride] and returns the ratio of scaled to true depth, 1 - omega f.
+// unresolved part f falls as e^-3(l/N)^2 while f is small, which is close, and as Cesaro's (1 - l / N)(1 - l / (N + 1))
+// where it is most of the peak, which lets no flux become negative (measured: the former fails from f = 0.65 on).
+// Writes the scaled omega chi_l to scatter[l * stride] and returns the ratio of scaled to true depth, 1 - omega f.
 //   chi  moments 0 .. streams of the phase function
 inline double scaleMoments(double albedo, const double* chi, int streams, bool delta_m, double* scatter, int stride) {
   const double last = chi[streams], before = chi[streams - 1];

@@ -109,6 +109,7 @@ void shape(StackRows& stack, const BasisRows& basis, int layers) {
           &layer.x_absorb, &layer.a, &layer.g, &layer.s, &layer.t, &layer.through, &layer.u_top, &layer.u_bottom,
           &layer.v_top, &layer.v_bottom, &layer.factor_inverse, &layer.remainder})
       *p = take(row);
+    layer.ends = take(4 * row);
   }
   for (double** p : {&stack.top_in, &stack.bottom_in, &stack.ground_row, &stack.s_top, &stack.d_top, &stack.s_bottom,
                      &stack.d_bottom})

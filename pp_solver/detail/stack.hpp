@@ -68,6 +68,7 @@ struct LayerRows {
   double *u_top, *u_bottom, *v_top, *v_bottom;  // homogeneous part at the ends: rows over j
   // Only where layers are stacked: for the way down
   double *factor, *factor_inverse, *remainder;
+  double* ends;  // the particular solution, four rows: S, D at the top, S, D at the bottom
 };
 
 struct StackRows {
