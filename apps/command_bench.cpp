@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
 #include "apps/terminal.hpp"
@@ -24,8 +25,22 @@ std::string table(const std::vector<SlabBenchPoint>& points) {
   return text;
 }
 
+nlohmann::ordered_json json(const std::vector<SlabBenchPoint>& points) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const SlabBenchPoint& p : points)
+    rows.push_back({{"problem", p.problem},
+                    {"streams", p.settings.streams},
+                    {"delta_m", p.settings.delta_m},
+                    {"corrections", p.settings.corrections},
+                    {"flux_seconds", p.flux_seconds},
+                    {"flux_error", p.flux_error},
+                    {"radiance_seconds", p.radiance_seconds},
+                    {"radiance_error", p.radiance_error}});
+  return {{"rows", std::move(rows)}};
+}
+
 int runBenchSlab(const std::string& folder_name, const RunOptions& run) {
-  if (run.json) throw InvalidInput("--json: bench writes its results as slab_bench.csv");
+  if (folder_name.empty()) throw InvalidInput("-o: must not be empty");
   const fs::path folder(folder_name);
   std::error_code failure;
   fs::create_directories(folder, failure);
@@ -39,7 +54,10 @@ int runBenchSlab(const std::string& folder_name, const RunOptions& run) {
   }
   writeWhole(folder / "slab_bench.csv", slabBenchCsv(points));
   writeWhole(folder / "slab_bench.svg", slabBenchPlot(points));
-  fmt::print("{}\nwrote {} and slab_bench.svg\n", table(points), (folder / "slab_bench.csv").string());
+  if (run.json)
+    fmt::print("{}\n", json(points).dump(2));
+  else
+    fmt::print("{}\nwrote {} and slab_bench.svg\n", table(points), (folder / "slab_bench.csv").string());
   return 0;
 }
 

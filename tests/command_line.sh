@@ -192,6 +192,7 @@ refuses ".svg" slab --plot x.png
 refuses "nowhere" slab --plot nowhere/x.svg
 refuses "folder" bench slab -o empty/folder
 refuses "frobnicate" bench frobnicate
+refuses "must not be empty" bench slab -o ""
 refuses "--frobnicate" tables --frobnicate
 
 # Files of slabs: what is wrong is named by line and field wherever it stands, and leaves nothing behind.
