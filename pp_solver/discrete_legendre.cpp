@@ -1,10 +1,10 @@
 #include "pp_solver/discrete_legendre.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <numbers>
 
 namespace sunfleck::pp {
 namespace {
@@ -123,21 +123,15 @@ DiscreteLegendre discreteLegendre(const DoubleGauss& gauss, int m) {
 DoubleGauss doubleGauss(int streams) {
   const int n = streams / 2;
   DoubleGauss gauss{Vector(n), Vector(n)};
-  for (int i = 0; i < n; ++i) {
-    // Newton's method on P_n from Tricomi's estimate, in long double so that weights are right to the last digit.
-    long double x = std::cos(std::numbers::pi_v<long double> * (i + 0.75L) / (n + 0.5L)), slope = 1.L;
-    for (int step = 0; step < 8; ++step) {
-      long double p = 1.L, p1 = 0.L;
-      for (int l = 0; l < n; ++l) {
-        const long double p2 = p1;
-        p1 = p;
-        p = ((2 * l + 1) * x * p1 - l * p2) / (l + 1);
-      }
-      slope = n * (p1 - x * p) / (1.L - x * x);
-      x -= p / slope;
-    }
-    gauss.mu[n - 1 - i] = static_cast<double>((1.L + x) / 2);
-    gauss.weight[n - 1 - i] = static_cast<double>(1.L / ((1.L - x * x) * slope * slope));
+  // In long double, so that the nodes near 0 and the weights are right to the last digit.
+  const std::vector<long double> zeros = boost::math::legendre_p_zeros<long double>(n);  // not negative, rising
+  for (std::size_t i = 0; i < zeros.size(); ++i) {
+    const long double slope = boost::math::legendre_p_prime(n, zeros[i]);
+    const std::size_t low = zeros.size() - 1 - i, high = n - 1 - low;
+    gauss.mu[low] = static_cast<double>((1.L - zeros[i]) / 2);
+    gauss.mu[high] = static_cast<double>((1.L + zeros[i]) / 2);
+    gauss.weight[low] = gauss.weight[high] =
+        static_cast<double>(1.L / ((1.L - zeros[i]) * (1.L + zeros[i]) * slope * slope));
   }
   return gauss;
 }

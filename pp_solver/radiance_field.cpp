@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/require.hpp"
+#include "pp_solver/detail/first_scattering.hpp"
 #include "pp_solver/detail/state.hpp"
 #include "pp_solver/hot_spot.hpp"
 
@@ -18,25 +19,10 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kAureole = 10. * kPi / 180.;  // how far from the beam the aureole is corrected [rad]
 constexpr int kPeakMoments = 1024;             // as many moments of a peak are looked at
 
-// (e^-pz - e^-qz) / (q - p)
-double difference(double p, double q, double z) {
-  const double x = std::abs(q - p) * z, low = std::min(p, q);
-  return std::exp(-low * z) * (x == 0. ? z : -std::expm1(-x) / std::abs(q - p));
-}
-
-// Light of the beam scattered once, the source 1 at the layer's top and falling as e^-rate z: what arrives at depth z
-// along a view whose extinction per depth is m.
-double onceDown(double rate, double m, double z) {
-  return m * difference(rate, m, z);
-}
-double onceUp(double rate, double m, double z, double w) {
-  return m * (std::exp(-rate * z) - (std::isinf(w) ? 0. : std::exp(-m * (w - z) - rate * w))) / (m + rate);
-}
-
 // Second divided difference of e^-xz at a, b, b.
 double secondDifference(double a, double b, double z) {
   const double x = (a - b) * z;
-  if (std::abs(x) > 0.5) return (z * std::exp(-b * z) - difference(a, b, z)) / (a - b);
+  if (std::abs(x) > 0.5) return (z * std::exp(-b * z) - detail::onceDown(a, b, z)) / (a - b);
   double sum = 0., term = 0.5;  // z^2 e^-bz times the sum of (-x)^l / (l + 2)!
   for (int l = 0; l < 16; ++l) {
     sum += term;
@@ -59,7 +45,7 @@ struct Levels {
 class Tracer {
   // What delta-M leaves out above a depth, of all layers together: omega f, and the moments of the peak, f_l / f.
   struct Peak {
-    double share = 0., lost = 0.;
+    double scattered = 0.;
     std::vector<double> moments;
   };
 
@@ -162,8 +148,8 @@ void Tracer::viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t
     double same, opposite;  // source of the beam's first scattering into mu, downward and upward
     s_.beamSource(rows, lane, p, mu, same, opposite);
     for (std::size_t i = 0; i < count; ++i) {
-      down[i * lanes + lane] += same * onceDown(row.rate[lane], m, levels_[p].z[i]);
-      up[i * lanes + lane] += opposite * onceUp(row.rate[lane], m, levels_[p].z[i], layer.thickness);
+      down[i * lanes + lane] += same * m * detail::onceDown(row.rate[lane], m, levels_[p].z[i]);
+      up[i * lanes + lane] += opposite * m * detail::onceUp(row.rate[lane], m, levels_[p].z[i], layer.thickness);
     }
   }
 }
@@ -255,12 +241,8 @@ void Tracer::addModes(bool sine) {
 // (P13) Share of the beam's light, per scaled depth along the view, that one scattering turns into it [1/sr]: by the
 // whole phase function, in the scaled medium (TMS of Nakajima & Tanaka 1988).
 double Tracer::phaseInto(std::size_t p, double mu, double azimuth) const {
-  if (const auto* leaves = std::get_if<LeafScattering>(&s_.problem.layers[p].medium))
-    return leafScattering(*leaves, mu, s_.mu0, azimuth) / s_.projectionOf(p, std::abs(mu));
-  const double sines = std::sqrt((1. - s_.mu0) * (1. + s_.mu0) * (1. - mu) * (1. + mu));
-  const double cosine = std::clamp(sines * std::cos(azimuth) + s_.mu0 * mu, -1., 1.);
-  const auto& particles = std::get<Particles>(s_.problem.layers[p].medium);
-  return particles.albedo * particles.phase(cosine) / s_.layers[p].scale;
+  return detail::scatteredInto(s_.problem.layers[p].medium, mu, s_.mu0, azimuth) /
+         (s_.layers[p].scale * s_.projectionOf(p, std::abs(mu)));
 }
 
 void Tracer::addWhole() {
@@ -291,8 +273,8 @@ void Tracer::addWhole() {
           source = s_.beam * s_.scaledBeam(p) * phaseInto(p, mus_[i], phis_[j] - phi0);
         const double entering = carried;
         const auto at = [&](double z) {
-          if (downward) return entering * std::exp(-m * z) + source * onceDown(rate, m, z);
-          return (std::isinf(w) ? 0. : entering * std::exp(-m * (w - z))) + source * onceUp(rate, m, z, w);
+          if (downward) return entering * std::exp(-m * z) + source * m * detail::onceDown(rate, m, z);
+          return (std::isinf(w) ? 0. : entering * std::exp(-m * (w - z))) + source * m * detail::onceUp(rate, m, z, w);
         };
         for (std::size_t k = 0; k < levels_[p].z.size(); ++k)
           if (levels_[p].output[k] >= 0) result(levels_[p].output[k]) += at(levels_[p].z[k]);
@@ -318,8 +300,7 @@ Tracer::Peak Tracer::peakAbove(double depth) const {
     for (int l = 0; l < kPeakMoments; ++l) sums[l] += peaked * (l < s_.settings.streams ? 1. : moments[l] / f);
   }
   if (!(scattered > 0.)) return peak;
-  peak.lost = scattered / path;
-  peak.share = scattered;
+  peak.scattered = scattered / path;
   while (!sums.empty() && std::abs(sums.back()) < 1e-12 * scattered) sums.pop_back();
   for (const double sum : sums) peak.moments.push_back(sum / scattered);
   return peak;
@@ -332,12 +313,12 @@ void Tracer::addAureole() {
   const double phi0 = s_.problem.beam->azimuth, sine0 = std::sqrt((1. - s_.mu0) * (1. + s_.mu0));
   for (std::size_t d = 0; d < depths_.size(); ++d) {
     const Peak peak = peakAbove(depths_[d]);
-    if (peak.share == 0.) continue;
+    if (peak.scattered == 0.) continue;
     for (std::size_t i = 0; i < mus_.size(); ++i) {
       if (mus_[i] < 0.) continue;
       const double mu = mus_[i], sines = sine0 * std::sqrt((1. - mu) * (1. + mu));
-      const double kappa = (1. - peak.lost) / s_.mu0;
-      const double path = secondDifference(1. / mu, kappa, depths_[d]) / (mu * s_.mu0) * (1. - peak.lost);
+      const double kappa = (1. - peak.scattered) / s_.mu0;
+      const double path = secondDifference(1. / mu, kappa, depths_[d]) / (mu * s_.mu0) * (1. - peak.scattered);
       for (std::size_t j = 0; j < phis_.size(); ++j) {
         const double cosine = std::clamp(sines * std::cos(phis_[j] - phi0) + s_.mu0 * mu, -1., 1.);
         if (std::acos(cosine) > kAureole) continue;
@@ -350,7 +331,7 @@ void Tracer::addAureole() {
           now = next;
         }
         result_[(d * mus_.size() + i) * phis_.size() + j] -=
-            s_.beam / (4. * kPi) * peak.lost * peak.lost / (1. - peak.lost) * sum * path;
+            s_.beam / (4. * kPi) * peak.scattered * peak.scattered / (1. - peak.scattered) * sum * path;
       }
     }
   }

@@ -21,7 +21,6 @@ using detail::KernelPath;
 using detail::LayerRows;
 using detail::StackRows;
 
-constexpr int kMostLanes = 16;
 // Lanes are worth while until the matrices of all lanes no longer fit the nearest cache.
 constexpr int kWidestStreams = 32;
 
@@ -54,7 +53,7 @@ void fill(const BasisRows& basis, StackRows& stack, int lane, const SlabCase& sl
 // Solves as many cases as `basis` has lanes; lanes beyond the end repeat the last case.
 void solve(const BasisRows& basis, const KernelPath& path, Worker& worker, std::span<const SlabCase> cases,
            std::span<SlabFluxes> result, bool infinite, bool delta_m) {
-  alignas(64) double mu[kMostLanes], first[kMostLanes];
+  alignas(64) double mu[detail::kMostLanes], first[detail::kMostLanes];
   StackRows& stack = worker.stack;
   shape(stack, basis, 1);
   LayerRows& layer = stack.layer[0];

@@ -93,26 +93,25 @@ void Solver::solve(const Problem& problem) {
     if (row.given_modes) continue;
     for (int j = 0; j < s.n; ++j) row.x_mean[j] = row.x_absorb[j] = row.x[j * s.basis.row];
   }
+  s.incident = s.mu0 * s.beam;
+  for (int i = 0; i < s.n; ++i) {
+    const double weight = 2. * kPi * s.ordinates->weight()[i] * s.ordinates->mu()[i];
+    s.incident += weight * (s.skyMode(problem.above, 0, s.ordinates->mu()[i], false) +
+                            (std::isinf(s.depth) ? 0. : s.skyMode(problem.below, 0, s.ordinates->mu()[i], false)));
+  }
   s.findHotSpot();
   s.solved = true;
 }
 
 double Solver::incident() const {
-  const State& s = solved();
-  double flux = s.mu0 * s.beam;
-  for (int i = 0; i < s.n; ++i) {
-    const double mu = s.ordinates->mu()[i], weight = 2. * kPi * s.ordinates->weight()[i] * mu;
-    flux += weight * s.skyMode(s.problem.above, 0, mu, false);
-    if (!std::isinf(s.depth)) flux += weight * s.skyMode(s.problem.below, 0, mu, false);
-  }
-  return flux;
+  return solved().incident;
 }
 
 double Solver::reflectance() const {
   const State& s = solved();
   double up = 0.;
   for (int i = 0; i < s.n; ++i) up += s.basis.flat[i] * (s.stack.s_top[i] - s.stack.d_top[i]);
-  return detail::withoutRounding(kPi * up / incident() + s.hot_spot.reflected);
+  return detail::withoutRounding(kPi * up / s.incident + s.hot_spot.reflected);
 }
 
 double Solver::transmittance() const {
@@ -120,13 +119,12 @@ double Solver::transmittance() const {
   if (std::isinf(s.depth)) return 0.;
   double down = 0.;
   for (int i = 0; i < s.n; ++i) down += s.basis.flat[i] * (s.stack.s_bottom[i] + s.stack.d_bottom[i]);
-  const double beam = s.beam * s.mu0 * s.scaledBeam(s.layers.size() - 1, s.layers.back().true_thickness);
-  return detail::withoutRounding((kPi * down + beam) / incident() + s.hot_spot.transmitted);
+  return detail::withoutRounding((kPi * down + s.beamOnGround()) / s.incident + s.hot_spot.transmitted);
 }
 
 double Solver::direct() const {
   const State& s = solved();
-  return s.beam == 0. || std::isinf(s.depth) ? 0. : s.beam * s.mu0 * s.trueBeam(s.depth) / incident();
+  return s.beam == 0. || std::isinf(s.depth) ? 0. : s.beam * s.mu0 * s.trueBeam(s.depth) / s.incident;
 }
 
 double Solver::absorptance() const {
@@ -145,7 +143,7 @@ double Solver::absorptance() const {
     const double beam = s.beam * s.scaledBeam(p) * layer.projection * (row.infinite ? 1. / rate : w * relax(rate * w));
     absorbed += layer.loss * (2. * kPi * sum + beam);
   }
-  return absorbed / incident() + s.hot_spot.absorbed;
+  return absorbed / s.incident + s.hot_spot.absorbed;
 }
 
 Fluxes Solver::fluxes(double depth) const {
@@ -172,10 +170,10 @@ Fluxes Solver::fluxes(double depth) const {
   fluxes.down = detail::withoutRounding(kPi * (sum + difference + planck) + drift + (s.mu0 * scaled - direct),
                                         std::abs(sum) + std::abs(difference) + s.mu0 * scaled);
   fluxes.direct = direct;
-  if (s.hasHotSpot() && depth == 0.) fluxes.up += s.hot_spot.reflected * incident();
+  if (s.hasHotSpot() && depth == 0.) fluxes.up += s.hot_spot.reflected * s.incident;
   if (s.hasHotSpot() && inside == layer.true_thickness) {
-    fluxes.down += s.hot_spot.transmitted * incident();
-    fluxes.up += s.problem.ground.albedo * s.hot_spot.transmitted * incident();
+    fluxes.down += s.hot_spot.transmitted * s.incident;
+    fluxes.up += s.problem.ground.albedo * s.hot_spot.transmitted * s.incident;
   }
   fluxes.mean_intensity = 0.5 * mean + planck + scaled / (4. * kPi);
   return fluxes;

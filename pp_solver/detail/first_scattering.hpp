@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "pp_solver/problem.hpp"
@@ -15,17 +16,18 @@ double scatteredInto(const Medium& medium, double mu, double mu0, double azimuth
 // Extinction per depth for a direction [1]: 1, or G of leaves.
 double extinction(const Medium& medium, double mu);
 
-// Light of the beam scattered once, of a source 1, after a depth z in a slab of thickness w: beam's extinction over its
-// cosine k0, the view's m. Safe for k0 = m, for 0 and for large exponents.
+// Light of the beam scattered once, of a source 1, after a depth z in a slab of thickness w, which may be infinite:
+// beam's extinction over its cosine k0, the view's m. Safe for k0 = m, for 0 and for large exponents.
 template <typename Number>
 Number onceDown(Number k0, Number m, Number z) {
   const Number apart = std::abs(m - k0), low = m < k0 ? m : k0;
-  return std::exp(-low * z) * (apart * z < Number(1e-6) ? z : -std::expm1(-apart * z) / apart);
+  return std::exp(-low * z) *
+         (apart * z < std::numeric_limits<Number>::epsilon() ? z : -std::expm1(-apart * z) / apart);
 }
 template <typename Number>
 Number onceUp(Number k0, Number m, Number z, Number w) {
   const Number sum = m + k0, y = w - z;
-  return std::exp(-k0 * z) * (sum * y < Number(1e-6) ? y : -std::expm1(-sum * y) / sum);
+  return std::exp(-k0 * z) * (sum * y < std::numeric_limits<Number>::epsilon() ? y : -std::expm1(-sum * y) / sum);
 }
 
 // The same as fast, in single precision: Henyey and Greenstein's function by its formula, others by splines (P12).

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pp_solver/detail/first_scattering.hpp"
 #include "pp_solver/detail/state.hpp"
 #include "pp_solver/hot_spot.hpp"
 
@@ -43,7 +44,7 @@ void Solver::State::findHotSpot() {
       const double mu = ordinates->mu()[i], root = std::sqrt(ordinates->weight()[i]),
                    g = tables[0]->nodes().projection(i);
       const double m = g / mu, up = 0.5 * (row.even_source[i] - row.odd_source[i]) / (root * mu);
-      const double leaving = up * (std::exp(-kappa * z) - std::exp(-m * (w - z) - kappa * w)) / (m + kappa);
+      const double leaving = up * detail::onceUp(kappa, m, z, w);
       const double ground = albedo / std::numbers::pi * beam * mu0 * std::exp(-kappa * w - m * (w - z));
       density += root * root * g * (leaving + ground);
     }
@@ -64,9 +65,9 @@ void Solver::State::findHotSpot() {
     const double mu = ordinates->mu()[i], weight = ordinates->weight()[i], m = tables[0]->nodes().projection(i) / mu;
     const double up = 0.5 * (row.even_source[i] - row.odd_source[i]) / (std::sqrt(weight) * mu);
     reflected += std::numbers::pi * basis.flat[i] * (stack.s_top[i] - stack.d_top[i]);
-    once += 2. * std::numbers::pi * weight * mu *
-            (up * -std::expm1(-(m + kappa) * w) / (m + kappa) +
-             albedo / std::numbers::pi * beam * mu0 * std::exp(-(m + kappa) * w));
+    once +=
+        2. * std::numbers::pi * weight * mu *
+        (up * detail::onceUp(kappa, m, 0., w) + albedo / std::numbers::pi * beam * mu0 * std::exp(-(m + kappa) * w));
   }
   const double higher = (reflected - once) / (beam * mu0);
   if (higher > 0.) hot_spot.again = std::max(0., 1. - (flux - hot_spot.reflected) / higher);

@@ -24,6 +24,8 @@ struct KernelPath {
   void (*viewLayer)(const BasisRows&, const LayerRows&, const View&, double* scratch);
 };
 
+constexpr int kMostLanes = 8;
+
 struct Kernel {
   int lanes;  // numbers in a vector
   KernelPath single, wide;

@@ -55,6 +55,7 @@ constexpr detail::KernelPath path() {
 
 }  // namespace
 
+static_assert(kLanes <= detail::kMostLanes);
 extern const detail::Kernel the_kernel;
 constinit const detail::Kernel the_kernel{.lanes = kLanes, .single = path<double>(), .wide = path<Vec>()};
 

@@ -16,7 +16,6 @@ using detail::ScaledLayer;
 using detail::StackRows;
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kMostLanes = 16;
 
 }  // namespace
 
@@ -93,7 +92,7 @@ void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t
   row.infinite = std::isinf(layer.true_thickness);
   row.given_modes = layer.leaves || settings.collocation;
   const double amplitude = sine ? 0. : beam * scaledBeam(index);
-  alignas(64) double mu[kMostLanes], first[kMostLanes];
+  alignas(64) double mu[detail::kMostLanes], first[detail::kMostLanes];
   for (int lane = 0; lane < lanes; ++lane) {
     const int m = static_cast<int>(rows.mode[lane]);
     for (int j = 0; j < streams; ++j) {

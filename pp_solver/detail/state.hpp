@@ -25,6 +25,7 @@ struct Solver::State {
   bool solved = false, any_leaves = false;
   double depth = 0.;           // of the whole stack, true
   double mu0 = 1., beam = 0.;  // irradiance normal to the beam
+  double incident = 0.;        // flux that arrives
   int modes_used = 0;
 
   // What the hot spot changes in the fluxes, over the flux that arrives (P11).
