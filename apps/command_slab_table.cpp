@@ -69,11 +69,11 @@ int runSlabTable(SlabTableOptions options, const RunOptions& run) {
   requireNamed(options.output, ".sft");
   decltype(pp::Layer::medium) medium;
   if (options.leaves.empty()) {
-    medium = pp::Particles{options.albedo, pp::PhaseFunction::henyeyGreenstein(options.asymmetry)};
+    medium = Particles{options.albedo, PhaseFunction::henyeyGreenstein(options.asymmetry)};
   } else {
-    medium = pp::LeafScattering{.angles = pp::LeafAngles::named(options.leaves),
-                                .reflectance = options.reflectance,
-                                .transmittance = options.transmittance};
+    medium = LeafScattering{.angles = LeafAngles::named(options.leaves),
+                            .reflectance = options.reflectance,
+                            .transmittance = options.transmittance};
     options.settings.note = options.leaves;
   }
   options.settings.max_bytes = static_cast<std::size_t>(std::lround(options.max_megabytes * 1e6));

@@ -75,15 +75,14 @@ std::vector<pp::Layer> readLayers(const std::string& file) {
     require(asymmetry > -1. && asymmetry < 1., where + "g", asymmetry, "in (-1, 1)");
     if (!layers.empty() && std::isinf(layers.back().thickness))
       throw InvalidInput(where + "a layer below one of infinite thickness: only the last may be infinite");
-    layers.push_back(
-        {.thickness = thickness,
-         .medium = pp::Particles{.albedo = albedo, .phase = pp::PhaseFunction::henyeyGreenstein(asymmetry)}});
+    layers.push_back({.thickness = thickness,
+                      .medium = Particles{.albedo = albedo, .phase = PhaseFunction::henyeyGreenstein(asymmetry)}});
   }
   if (layers.empty()) throw InvalidInput(file + ": must have at least one layer");
   return layers;
 }
 
-pp::PhaseFunction readMoments(const std::string& file) {
+PhaseFunction readMoments(const std::string& file) {
   std::ifstream in = opened(file);
   std::vector<double> moments;
   std::string line;
@@ -102,7 +101,7 @@ pp::PhaseFunction readMoments(const std::string& file) {
   }
   if (moments.empty()) throw InvalidInput(file + ": must hold at least one moment, chi_0 = 1");
   try {
-    return pp::PhaseFunction::fromMoments(std::move(moments));
+    return PhaseFunction::fromMoments(std::move(moments));
   } catch (const InvalidInput& e) {
     throw InvalidInput(file + ": " + e.what());
   }

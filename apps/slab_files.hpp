@@ -13,6 +13,6 @@ std::vector<pp::Layer> readLayers(const std::string& file);
 
 // A phase function from a file of its Legendre moments chi_0 = 1, chi_1 ..., parted by commas, spaces or lines. Throws
 // InvalidInput naming the file and, where one is at fault, the line.
-pp::PhaseFunction readMoments(const std::string& file);
+PhaseFunction readMoments(const std::string& file);
 
 }  // namespace sunfleck::apps

@@ -20,7 +20,7 @@ void requireFinite(double value, const char* name, const char* rule, double low,
 }
 
 // "spherical", "ellipsoidal:1.5", "beta:57,20" with angles in degrees.
-pp::LeafAngles leafAngles(const std::string& text) {
+LeafAngles leafAngles(const std::string& text) {
   const std::size_t colon = text.find(':');
   const std::string name = text.substr(0, colon);
   std::vector<double> numbers;
@@ -38,19 +38,19 @@ pp::LeafAngles leafAngles(const std::string& text) {
   if (name == "ellipsoidal") {
     takes(1, "ellipsoidal:RATIO, horizontal over vertical axis");
     require(numbers[0] > 0., "leaves: ellipsoidal ratio", numbers[0], "above 0");
-    return pp::LeafAngles::ellipsoidal(numbers[0]);
+    return LeafAngles::ellipsoidal(numbers[0]);
   }
   if (name == "beta") {
     takes(2, "beta:MEAN,DEVIATION, in degrees");
     require(numbers[0] > 0. && numbers[0] < 90., "leaves: mean of beta", numbers[0], "above 0, below 90 degrees");
     require(numbers[1] > 0. && numbers[1] < 45., "leaves: deviation of beta", numbers[1], "above 0, below 45 degrees");
-    return pp::LeafAngles::beta(numbers[0] * kDegree, numbers[1] * kDegree);
+    return LeafAngles::beta(numbers[0] * kDegree, numbers[1] * kDegree);
   }
   takes(0, "without a number");
-  return pp::LeafAngles::named(name.c_str());
+  return LeafAngles::named(name.c_str());
 }
 
-pp::LeafScattering leafScattering(const SlabOptions& options) {
+LeafScattering leafScattering(const SlabOptions& options) {
   requireFinite(options.leaf_reflectance, "reflectance", "in [0, 1]", 0., 1.);
   requireFinite(options.leaf_transmittance, "transmittance", "in [0, 1]", 0., 1.);
   const double albedo = options.leaf_reflectance + options.leaf_transmittance;
@@ -67,7 +67,7 @@ std::vector<pp::Layer> layersOf(const SlabOptions& options, const pp::SlabCase& 
   if (!options.leaves.empty()) return {{.thickness = slab.thickness, .medium = leafScattering(options)}};
   if (!options.moments.empty())
     return {{.thickness = slab.thickness,
-             .medium = pp::Particles{.albedo = slab.albedo, .phase = readMoments(options.moments)}}};
+             .medium = Particles{.albedo = slab.albedo, .phase = readMoments(options.moments)}}};
   return homogeneousSlab(slab).problem.layers;
 }
 

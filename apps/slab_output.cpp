@@ -115,7 +115,7 @@ std::string slabText(const SlabQuestion& question, const ModelAnswer& given, dou
   if (const double albedo = question.setup.problem.ground.albedo; albedo > 0.)
     text += fmt::format("  in the ground  {:.12f}\n", (1. - albedo) * budget.transmittance);
   if (question.leaf_angles.size() > 0 &&
-      std::get<pp::LeafScattering>(question.setup.problem.layers[0].medium).hot_spot > 0. && !question.depths.empty())
+      std::get<LeafScattering>(question.setup.problem.layers[0].medium).hot_spot > 0. && !question.depths.empty())
     text +=
         "\nthe hot spot is in the shares, the fluxes of both faces and the radiance at the top, not within the layer\n";
   if (!question.depths.empty()) text += fluxTable(question, answer, given.model->is_sample);

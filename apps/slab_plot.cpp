@@ -66,12 +66,12 @@ std::string subtitleOf(const SlabQuestion& question) {
   std::string text;
   if (const auto& slab = question.setup.homogeneous)
     text = fmt::format("omega {:g}, g {:g}, thickness {:g}", slab->albedo, slab->asymmetry, slab->thickness);
-  else if (const auto* leaves = std::get_if<pp::LeafScattering>(&problem.layers[0].medium))
+  else if (const auto* leaves = std::get_if<LeafScattering>(&problem.layers[0].medium))
     text = fmt::format("{} leaves, reflectance {:g}, transmittance {:g}, leaf area index {:g}{}", question.leaf_angles,
                        leaves->reflectance, leaves->transmittance, totalThickness(question),
                        leaves->hot_spot > 0. ? fmt::format(", hot spot {:g}", leaves->hot_spot) : "");
   else if (problem.layers.size() == 1)
-    text = fmt::format("omega {:g}, thickness {:g}", std::get<pp::Particles>(problem.layers[0].medium).albedo,
+    text = fmt::format("omega {:g}, thickness {:g}", std::get<Particles>(problem.layers[0].medium).albedo,
                        totalThickness(question));
   else
     text = fmt::format("{} layers, thickness {:g}", problem.layers.size(), totalThickness(question));

@@ -16,7 +16,7 @@ using namespace sunfleck;
 
 // The problem that other codes are timed with: g .85, omega .99, tau 10, mu0 .5.
 pp::Problem timedProblem() {
-  return {.layers = {{.thickness = 10., .medium = pp::Particles{0.99, pp::PhaseFunction::henyeyGreenstein(0.85)}}},
+  return {.layers = {{.thickness = 10., .medium = Particles{0.99, PhaseFunction::henyeyGreenstein(0.85)}}},
           .beam = pp::Beam{.mu0 = 0.5}};
 }
 
@@ -60,9 +60,9 @@ void fluxBatch(benchmark::State& state) {
   pp::Solver solver({.streams = streams});
   for (std::size_t i = 0; i < cases.size(); i += 97) {
     const auto& [asymmetry, albedo, thickness, mu0] = cases[i];
-    solver.solve({.layers = {{.thickness = thickness,
-                              .medium = pp::Particles{albedo, pp::PhaseFunction::henyeyGreenstein(asymmetry)}}},
-                  .beam = pp::Beam{.mu0 = mu0}});
+    solver.solve(
+        {.layers = {{.thickness = thickness, .medium = Particles{albedo, PhaseFunction::henyeyGreenstein(asymmetry)}}},
+         .beam = pp::Beam{.mu0 = mu0}});
     if (!(std::abs(solver.reflectance() - fluxes[i].reflectance) < 1e-12 &&
           std::abs(solver.transmittance() - fluxes[i].transmittance) < 1e-12))
       return state.SkipWithError("wrong answer");
@@ -115,9 +115,8 @@ void layers(benchmark::State& state) {
   pp::Problem problem = timedProblem();
   problem.layers.clear();
   for (int i = 0; i < count; ++i)
-    problem.layers.push_back(
-        {.thickness = 10. / count,
-         .medium = pp::Particles{0.99 - 1e-3 * i, pp::PhaseFunction::henyeyGreenstein(0.85 - 1e-3 * i)}});
+    problem.layers.push_back({.thickness = 10. / count,
+                              .medium = Particles{0.99 - 1e-3 * i, PhaseFunction::henyeyGreenstein(0.85 - 1e-3 * i)}});
   pp::Solver solver({.streams = static_cast<int>(state.range(0))});
   solver.solve(problem);
   if (!(std::abs(solver.reflectance() + solver.transmittance() + solver.absorptance() - 1.) < 1e-12))

@@ -86,18 +86,17 @@ double drawThickness(Random& random, bool last) {
   return chance(random, 0.5) ? logBetween(random, 1e-12, 1e12) : logBetween(random, 1e-2, 1e2);
 }
 
-pp::PhaseFunction drawPhase(Random& random) {
+PhaseFunction drawPhase(Random& random) {
   const double kind = random.uniformDouble();
-  if (kind < 0.85) return pp::PhaseFunction::henyeyGreenstein(drawAsymmetry(random));
+  if (kind < 0.85) return PhaseFunction::henyeyGreenstein(drawAsymmetry(random));
   // 1 + 3 c x + 5 d P2(x) >= 1 - 3 |c| - 5 |d|.
-  if (kind < 0.95)
-    return pp::PhaseFunction::fromMoments({1., between(random, -0.15, 0.15), between(random, -0.1, 0.1)});
+  if (kind < 0.95) return PhaseFunction::fromMoments({1., between(random, -0.15, 0.15), between(random, -0.1, 0.1)});
   std::vector<double> cosines{-1.}, values{random.uniformDouble()};
   while (cosines.back() < 1.) {
     cosines.push_back(std::min(cosines.back() + between(random, 0.01, 0.3), 1.));
     values.push_back(0.01 + random.uniformDouble());
   }
-  return pp::PhaseFunction::sampled(cosines, values);
+  return PhaseFunction::sampled(cosines, values);
 }
 
 double totalThickness(const pp::Problem& problem) {
@@ -121,7 +120,7 @@ StressProblem drawProblem(std::uint64_t seed, std::uint64_t index) {
   const std::size_t layers = kind < 0.5 ? 1 : kind < 0.8 ? 2 + pick(random, 4) : 6 + pick(random, 45);
   for (std::size_t i = 0; i < layers; ++i)
     problem.layers.push_back({.thickness = drawThickness(random, i + 1 == layers),
-                              .medium = pp::Particles{drawAlbedo(random), drawPhase(random)}});
+                              .medium = Particles{drawAlbedo(random), drawPhase(random)}});
   const bool infinite = std::isinf(problem.layers.back().thickness);
   if (chance(random, 0.5)) problem.ground.albedo = chance(random, 0.3) ? 1. : random.uniformDouble();
 
@@ -172,7 +171,7 @@ std::string describe(const StressProblem& drawn) {
   text << ", above " << std::get<double>(problem.above) << ", below " << std::get<double>(problem.below) << ", ground "
        << problem.ground.albedo << ", layers (thickness omega chi_1 chi_2)";
   for (const pp::Layer& layer : problem.layers) {
-    const auto& particles = std::get<pp::Particles>(layer.medium);
+    const auto& particles = std::get<Particles>(layer.medium);
     std::array<double, 3> moments;
     particles.phase.moments(moments);
     text << " (" << layer.thickness << ' ' << particles.albedo << ' ' << moments[1] << ' ' << moments[2] << ')';

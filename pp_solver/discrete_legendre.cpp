@@ -1,7 +1,6 @@
 #include "pp_solver/discrete_legendre.hpp"
 
 #include <algorithm>
-#include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -119,22 +118,6 @@ DiscreteLegendre discreteLegendre(const DoubleGauss& gauss, int m) {
 }
 
 }  // namespace
-
-DoubleGauss doubleGauss(int streams) {
-  const int n = streams / 2;
-  DoubleGauss gauss{Vector(n), Vector(n)};
-  // In long double, so that the nodes near 0 and the weights are right to the last digit.
-  const std::vector<long double> zeros = boost::math::legendre_p_zeros<long double>(n);  // not negative, rising
-  for (std::size_t i = 0; i < zeros.size(); ++i) {
-    const long double slope = boost::math::legendre_p_prime(n, zeros[i]);
-    const std::size_t low = zeros.size() - 1 - i, high = n - 1 - low;
-    gauss.mu[low] = static_cast<double>((1.L - zeros[i]) / 2);
-    gauss.mu[high] = static_cast<double>((1.L + zeros[i]) / 2);
-    gauss.weight[low] = gauss.weight[high] =
-        static_cast<double>(1.L / ((1.L - zeros[i]) * (1.L + zeros[i]) * slope * slope));
-  }
-  return gauss;
-}
 
 struct Ordinates::Modes {
   std::vector<std::once_flag> made;

@@ -3,15 +3,10 @@
 #include <memory>
 #include <vector>
 
+#include "scattering/double_gauss.hpp"
+
 // Angles and polynomials of discrete ordinates: all that depends on the number of streams and the azimuth mode alone.
 namespace sunfleck::pp {
-
-// (P1) Double-Gauss ordinates: Gauss-Legendre nodes on (0, 1) for each hemisphere (Sykes 1951).
-struct DoubleGauss {
-  std::vector<double> mu;      // ascending [1], N / 2 of them
-  std::vector<double> weight;  // their sum is 1
-};
-DoubleGauss doubleGauss(int streams);
 
 // (P2) Legendre functions made orthonormal on the ordinates themselves, for one azimuth mode m.
 //

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pp_solver/leaf_scattering.hpp"
+#include "scattering/leaf_scattering.hpp"
 
 // (P22) The hot spot: where one looks down along the sun's rays, every leaf that one sees is lit. Leaves as small as
 // points do not show it; finite ones correlate the gaps through which light enters and leaves (Kuusk 1985, 1991). First

@@ -7,18 +7,11 @@
 #include <vector>
 
 #include "pp_solver/ground.hpp"
-#include "pp_solver/leaf_scattering.hpp"
-#include "pp_solver/phase_function.hpp"
+#include "scattering/medium.hpp"
 
 // The plane-parallel problem. Depth counts downward from 0 at the lit face; mu > 0 is light that travels downward
 // (core/directions.hpp: directions are those of travel); phi is the azimuth of travel.
 namespace sunfleck::pp {
-
-// Particles that look the same from everywhere. Depth is optical depth [1].
-struct Particles {
-  double albedo = 0.;  // omega, single-scattering albedo [1], 0 .. 1
-  PhaseFunction phase;
-};
 
 // Cosines and thicknesses outside of these would leave the range of numbers in their products.
 inline constexpr double kLeastCosine = 1e-100, kLeastThickness = 1e-100, kMostThickness = 1e100;
@@ -28,7 +21,7 @@ struct Layer {
   // Optical thickness of particles [1], leaf area index (one-sided leaf area above ground area) of leaves [1]. 1e-100
   // to 1e100; infinity is allowed for the last layer.
   double thickness = 1.;
-  std::variant<Particles, LeafScattering> medium;
+  Medium medium;
   // Planck radiance B at the top and at the bottom [radiance]; linear between. The layer emits (1 - omega) B.
   double emission_top = 0., emission_bottom = 0.;
 };

@@ -241,7 +241,7 @@ void Tracer::addModes(bool sine) {
 // (P13) Share of the beam's light, per scaled depth along the view, that one scattering turns into it [1/sr]: by the
 // whole phase function, in the scaled medium (TMS of Nakajima & Tanaka 1988).
 double Tracer::phaseInto(std::size_t p, double mu, double azimuth) const {
-  return detail::scatteredInto(s_.problem.layers[p].medium, mu, s_.mu0, azimuth) /
+  return scatteredInto(s_.problem.layers[p].medium, mu, s_.mu0, azimuth) /
          (s_.layers[p].scale * s_.projectionOf(p, std::abs(mu)));
 }
 

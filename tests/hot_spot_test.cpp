@@ -20,7 +20,7 @@
 namespace {
 
 using namespace sunfleck;
-using pp::LeafScattering;
+using namespace sunfleck::pp;
 using pp::ScatteredOnce;
 constexpr double kPi = std::numbers::pi;
 
@@ -48,7 +48,7 @@ TEST(P22_HotSpot, IsWholeWhereTheViewMeetsTheSun) {
       const LeafScattering leaves{.reflectance = 0.4, .transmittance = 0.3, .hot_spot = 0.1};
       const pp::SunAndView at{.thickness = thickness, .mu0 = mu, .mu = mu, .azimuth = kPi};
       const ScatteredOnce turbid = scatteredOnceTurbid(leaves, at), excess = hotSpotExcess(leaves, at);
-      const double K = 0.5 / mu, turn = pp::leafScattering(leaves, -mu, mu, kPi);
+      const double K = 0.5 / mu, turn = leafScattering(leaves, -mu, mu, kPi);
       EXPECT_NEAR(turbid.gap + excess.gap, std::exp(-K * thickness), 1e-14);
       // cos(pi / 2) is 6e-17 and not 0: the paths part a little.
       EXPECT_NEAR((turbid.leaves + excess.leaves) / (turn * -std::expm1(-K * thickness) / K / mu), 1., 1e-12);
@@ -81,7 +81,7 @@ TEST(P22_HotSpot, IntegratesTheLayer) {
           }
           const pp::SunAndView at{thickness, mu0, mu, azimuth};
           // 1e-13 is the cancellation in this test's own integrand.
-          const double found = hotSpotExcess(leaves, at).leaves / pp::leafScattering(leaves, -mu, mu0, azimuth) * mu;
+          const double found = hotSpotExcess(leaves, at).leaves / leafScattering(leaves, -mu, mu0, azimuth) * mu;
           EXPECT_NEAR(found, wanted, 1e-10 * wanted + 1e-13)
               << hot_spot << " " << thickness << " " << mu << " " << azimuth;
         }
@@ -89,7 +89,7 @@ TEST(P22_HotSpot, IntegratesTheLayer) {
 
 TEST(P22_HotSpot, IsReciprocal) {
   const LeafScattering leaves{
-      .angles = pp::LeafAngles::planophile(), .reflectance = 0.4, .transmittance = 0.3, .hot_spot = 0.1};
+      .angles = LeafAngles::planophile(), .reflectance = 0.4, .transmittance = 0.3, .hot_spot = 0.1};
   const ScatteredOnce there = hotSpotExcess(leaves, {2., 0.9, 0.4, 2.5}),
                       back = hotSpotExcess(leaves, {2., 0.4, 0.9, 2.5});
   EXPECT_NEAR(there.leaves * 0.4, back.leaves * 0.9, 1e-14);
@@ -117,7 +117,7 @@ TEST(P22_HotSpot, AgreesWithRandomDiscs) {
   }
   const double found = double(open) / kCount, error = std::sqrt(found * (1. - found) / kCount);
   const LeafScattering leaves{
-      .angles = pp::LeafAngles::table({0., 1e-6}, {1., 1.}), .reflectance = 0.5, .transmittance = 0., .hot_spot = 0.2};
+      .angles = LeafAngles::table({0., 1e-6}, {1., 1.}), .reflectance = 0.5, .transmittance = 0., .hot_spot = 0.2};
   const pp::SunAndView at{.thickness = lai, .mu0 = 1., .mu = 0.5, .azimuth = 0.};
   const double turbid = scatteredOnceTurbid(leaves, at).gap;
   EXPECT_NEAR(found, turbid + hotSpotExcess(leaves, at).gap, 4. * error);
@@ -194,9 +194,8 @@ TEST(P22_HotSpot, IsFiniteEverywhere) {
       for (double mu0 : {1e-310, 1e-9, 0.5, 1.})
         for (double mu : {1e-310, 1e-9, 0.5, 1.})
           for (double azimuth : {0., kPi})
-            for (const pp::LeafAngles& angles :
-                 {pp::LeafAngles::spherical(), pp::LeafAngles::table({0., 1e-6}, {1., 1.}),
-                  pp::LeafAngles::table({0.5 * kPi - 1e-6, 0.5 * kPi}, {1., 1.})}) {
+            for (const LeafAngles& angles : {LeafAngles::spherical(), LeafAngles::table({0., 1e-6}, {1., 1.}),
+                                             LeafAngles::table({0.5 * kPi - 1e-6, 0.5 * kPi}, {1., 1.})}) {
               const LeafScattering leaves{
                   .angles = angles, .reflectance = 0.7, .transmittance = 0.3, .hot_spot = hot_spot};
               const pp::SunAndView at{thickness, mu0, mu, azimuth};

@@ -1,5 +1,5 @@
 // Check that leaf angle distributions are what their sources say, are told from wrong input, and project as they must.
-#include "pp_solver/leaf_angles.hpp"
+#include "scattering/leaf_angles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "core/require.hpp"
-#include "pp_solver/leaf_scattering.hpp"
+#include "scattering/leaf_scattering.hpp"
 
 namespace {
 
 using namespace sunfleck;
-using pp::LeafAngles;
 constexpr double kPi = std::numbers::pi, kUpright = 0.5 * kPi;
 const std::vector<const char*> kNames{"spherical",   "planophile",   "erectophile",
                                       "plagiophile", "extremophile", "uniform"};
@@ -147,11 +146,11 @@ TEST(P20_LeafAngles, TellWrongInput) {
 // sqrt(x^2 mu^2 + 1 - mu^2) over Campbell's normalisation. Error: roundings, of ratios up to 1000 1e-13.
 TEST(P20_LeafProjection, IsTheShadowOfAnEllipsoid) {
   for (double mu : {0., 1e-9, 0.01, 0.3, 0.7, 0.999, 1.}) {
-    EXPECT_NEAR(pp::leafProjection(LeafAngles::spherical(), mu), 0.5, 1e-14) << mu;
+    EXPECT_NEAR(leafProjection(LeafAngles::spherical(), mu), 0.5, 1e-14) << mu;
     for (double ratio : {1e-3, 0.02, 0.5, 3., 40., 1e3}) {
       const double e = std::sqrt(std::abs(1. - (ratio < 1. ? ratio * ratio : 1. / (ratio * ratio))));
       const double normalisation = ratio < 1. ? ratio + std::asin(e) / e : ratio + std::atanh(e) / (e * ratio);
-      EXPECT_NEAR(pp::leafProjection(LeafAngles::ellipsoidal(ratio), mu),
+      EXPECT_NEAR(leafProjection(LeafAngles::ellipsoidal(ratio), mu),
                   std::sqrt(ratio * ratio * mu * mu + (1. - mu) * (1. + mu)) / normalisation, 1e-12)
           << ratio << " " << mu;
     }
@@ -162,9 +161,8 @@ TEST(P20_LeafProjection, IsTheShadowOfAnEllipsoid) {
 // them. 1e-11 for the steepest distributions.
 TEST(P20_LeafProjection, IsKnownAtBothEnds) {
   for (const auto& [name, angles] : manyAngles()) {
-    EXPECT_NEAR(pp::leafProjection(angles, 1.), nodeMean(angles, [](double t) { return std::cos(t); }), 1e-11) << name;
-    EXPECT_NEAR(pp::leafProjection(angles, 0.), nodeMean(angles, [](double t) { return 2. / kPi * std::sin(t); }),
-                1e-11)
+    EXPECT_NEAR(leafProjection(angles, 1.), nodeMean(angles, [](double t) { return std::cos(t); }), 1e-11) << name;
+    EXPECT_NEAR(leafProjection(angles, 0.), nodeMean(angles, [](double t) { return 2. / kPi * std::sin(t); }), 1e-11)
         << name;
   }
 }
@@ -175,7 +173,7 @@ TEST(P20_LeafProjection, AveragesToOneHalf) {
   for (const char* name : kNames) {
     double sum = 0.;
     constexpr int kCount = 2000;
-    for (int i = 0; i < kCount; ++i) sum += pp::leafProjection(LeafAngles::named(name), (i + 0.5) / kCount) / kCount;
+    for (int i = 0; i < kCount; ++i) sum += leafProjection(LeafAngles::named(name), (i + 0.5) / kCount) / kCount;
     EXPECT_NEAR(sum, 0.5, 2e-7) << name;
   }
 }
@@ -186,13 +184,13 @@ TEST(P20_LeafProjection, IsNearWhatTheNodesSay) {
     for (int i = 0; i <= 50; ++i) {
       const double mu = i / 50.;
       std::vector<double> modes(angles.nodes().size());
-      pp::leafProjectionModes(angles, 0, mu, modes);
+      leafProjectionModes(angles, 0, mu, modes);
       double sum = 0.;
       for (std::size_t r = 0; r < modes.size(); ++r) sum += angles.nodes()[r].weight * modes[r];
-      EXPECT_NEAR(sum, pp::leafProjection(angles, mu), 1.5e-5) << name << " " << mu;
+      EXPECT_NEAR(sum, leafProjection(angles, mu), 1.5e-5) << name << " " << mu;
     }
-  EXPECT_THROW(pp::leafProjection(LeafAngles::spherical(), 1.1), InvalidInput);
-  EXPECT_THROW(pp::leafProjection(LeafAngles::spherical(), std::numeric_limits<double>::quiet_NaN()), InvalidInput);
+  EXPECT_THROW(leafProjection(LeafAngles::spherical(), 1.1), InvalidInput);
+  EXPECT_THROW(leafProjection(LeafAngles::spherical(), std::numeric_limits<double>::quiet_NaN()), InvalidInput);
 }
 
 }  // namespace

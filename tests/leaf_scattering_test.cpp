@@ -1,6 +1,6 @@
 // Check that leaves scatter as the double integral over directions and leaf angles says, mode by mode, and lose
 // nothing.
-#include "pp_solver/leaf_scattering.hpp"
+#include "scattering/leaf_scattering.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,6 @@
 namespace {
 
 using namespace sunfleck;
-using pp::LeafAngles;
 constexpr double kPi = std::numbers::pi;
 
 struct Rule {
@@ -56,7 +55,7 @@ TEST(P21_LeafProjectionModes, AreTheFourierCoefficients) {
     for (double mu : {0., 1e-12, 1e-4, 0.3, angles.nodes()[20].sine, 0.9, 1. - 1e-13, 1.})
       for (int m : {0, 1, 2, 3, 4, 17, 64, 255}) {
         std::vector<double> modes(angles.nodes().size());
-        pp::leafProjectionModes(angles, m, mu, modes);
+        leafProjectionModes(angles, m, mu, modes);
         for (std::size_t r = 0; r < modes.size(); r += 9)
           EXPECT_NEAR(modes[r], modeByQuadrature(angles.nodes()[r].inclination, mu, m), 3e-14)
               << "mode " << m << " mu " << mu << " inclination " << angles.nodes()[r].inclination;
@@ -84,8 +83,8 @@ TEST(P21_LeafScattering, IsTheMeanOverTheLeaves) {
             }
             sum += weight * mean / kPi;
           }
-          const pp::LeafScattering leaves{.angles = angles, .reflectance = rho, .transmittance = tau};
-          EXPECT_NEAR(pp::leafScattering(leaves, mu, mu_in, azimuth), sum, 2e-6) << name << mu << mu_in << azimuth;
+          const LeafScattering leaves{.angles = angles, .reflectance = rho, .transmittance = tau};
+          EXPECT_NEAR(leafScattering(leaves, mu, mu_in, azimuth), sum, 2e-6) << name << mu << mu_in << azimuth;
         }
 }
 
@@ -95,8 +94,8 @@ TEST(P21_LeafKernel, SumsToTheScatteringFunction) {
   const LeafAngles angles = LeafAngles::planophile();
   const double rho = 0.5, tau = 0.1;
   const std::vector<double> mus{0.02, 0.4, 0.77, 1.}, mus_in{0.3, 0.9};
-  pp::LeafProjections rows(angles, mus), columns(angles, mus_in);
-  pp::LeafKernel kernel;
+  LeafProjections rows(angles, mus), columns(angles, mus_in);
+  LeafKernel kernel;
   const double azimuth = 0.8;
   std::vector<double> down(8, 0.), up(8, 0.), even(8), odd(8);
   for (int m = 0; m < 256; ++m) {
@@ -110,11 +109,11 @@ TEST(P21_LeafKernel, SumsToTheScatteringFunction) {
       up[k] += factor * 0.5 * (even[k] - odd[k]);
     }
   }
-  const pp::LeafScattering leaves{.angles = angles, .reflectance = rho, .transmittance = tau};
+  const LeafScattering leaves{.angles = angles, .reflectance = rho, .transmittance = tau};
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 2; ++j) {
-      EXPECT_NEAR(down[2 * i + j], pp::leafScattering(leaves, mus[i], mus_in[j], azimuth), 1e-6) << mus[i];
-      EXPECT_NEAR(up[2 * i + j], pp::leafScattering(leaves, -mus[i], mus_in[j], azimuth), 1e-6) << mus[i];
+      EXPECT_NEAR(down[2 * i + j], leafScattering(leaves, mus[i], mus_in[j], azimuth), 1e-6) << mus[i];
+      EXPECT_NEAR(up[2 * i + j], leafScattering(leaves, -mus[i], mus_in[j], azimuth), 1e-6) << mus[i];
     }
 }
 
@@ -123,11 +122,11 @@ TEST(P21_LeafKernel, SumsToTheScatteringFunction) {
 TEST(P21_LeafKernel, ScattersAsTheDoubleIntegral) {
   const LeafAngles angles = LeafAngles::erectophile();
   const double rho = 0.2, tau = 0.55;
-  const pp::LeafScattering leaves{.angles = angles, .reflectance = rho, .transmittance = tau};
+  const LeafScattering leaves{.angles = angles, .reflectance = rho, .transmittance = tau};
   const Rule rule = halfRangeRule<7>();
   const std::vector<double> mus{0.25, 0.85};
-  pp::LeafProjections rows(angles, mus), columns(angles, rule.mus);
-  pp::LeafKernel kernel;
+  LeafProjections rows(angles, mus), columns(angles, rule.mus);
+  LeafKernel kernel;
   const auto radiance = [](double mu) { return mu > 0. ? 1. + mu * mu : 0.3 - 0.2 * mu; };
   constexpr int kAzimuths = 128;
   for (int m : {0, 1, 2, 3, 4}) {
@@ -144,8 +143,8 @@ TEST(P21_LeafKernel, ScattersAsTheDoubleIntegral) {
             const double phi = 2. * kPi * (k + 0.5) / kAzimuths;
             const double arriving = rule.weights[j] * 2. * kPi / kAzimuths * radiance(sign * rule.mus[j]) *
                                     std::cos(m * phi);  // scattered to azimuth 0, where cos(m phi) is 1
-            down += arriving * pp::leafScattering(leaves, mus[i], sign * rule.mus[j], -phi);
-            up += arriving * pp::leafScattering(leaves, -mus[i], sign * rule.mus[j], -phi);
+            down += arriving * leafScattering(leaves, mus[i], sign * rule.mus[j], -phi);
+            up += arriving * leafScattering(leaves, -mus[i], sign * rule.mus[j], -phi);
           }
         const std::size_t at = i * rule.mus.size() + j;
         sum += rule.weights[j] * even[at] * (radiance(rule.mus[j]) + radiance(-rule.mus[j]));
@@ -165,11 +164,11 @@ void expectEnergy() {
   for (const LeafAngles& angles :
        {LeafAngles::spherical(), LeafAngles::planophile(), LeafAngles::extremophile(), LeafAngles::beta(0.785, 0.7),
         LeafAngles::table({0., 1e-6}, {1., 1.}), LeafAngles::ellipsoidal(1e-3)}) {
-    const pp::LeafProjections nodes(angles, rule.mus, rule.weights);
+    const LeafProjections nodes(angles, rule.mus, rule.weights);
     const std::vector<double> beams{1., 0.5, 1e-3, rule.mus[0]};
-    const pp::LeafProjections beam(angles, beams);
-    for (const pp::LeafProjections* columns : {&nodes, &beam}) {
-      pp::LeafKernel kernel;
+    const LeafProjections beam(angles, beams);
+    for (const LeafProjections* columns : {&nodes, &beam}) {
+      LeafKernel kernel;
       fillLeafKernel(nodes, *columns, kernel);
       std::vector<double> even(kernel.modulus.size()), odd(kernel.modulus.size());
       kernel.evenOdd(0.7, 0.3, even, odd);
@@ -193,10 +192,10 @@ TEST(P21_LeafKernel, ConservesEnergy) {
 // 3e-5, 6e-7 and 1e-8 for 4, 8 and 16 planophile; spherical to rounding.
 TEST(P21_LeafProjections, KeepTheExtinctionOfTheirDirections) {
   const auto worst = [](const LeafAngles& angles, const Rule& rule) {
-    const pp::LeafProjections nodes(angles, rule.mus, rule.weights);
+    const LeafProjections nodes(angles, rule.mus, rule.weights);
     double off = 0.;
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      off = std::max(off, std::abs(nodes.projection(i) - pp::leafProjection(angles, rule.mus[i])));
+      off = std::max(off, std::abs(nodes.projection(i) - leafProjection(angles, rule.mus[i])));
     return off;
   };
   EXPECT_LT(worst(LeafAngles::planophile(), halfRangeRule<4>()), 4e-5);
@@ -207,7 +206,7 @@ TEST(P21_LeafProjections, KeepTheExtinctionOfTheirDirections) {
 
 TEST(P21_LeafProjections, ReturnToModeZero) {
   const Rule rule = halfRangeRule<4>();
-  pp::LeafProjections nodes(LeafAngles::uniform(), rule.mus, rule.weights);
+  LeafProjections nodes(LeafAngles::uniform(), rule.mus, rule.weights);
   const std::vector<double> before(nodes.values(2).begin(), nodes.values(2).end());
   nodes.setMode(3);
   EXPECT_NE(before[10], nodes.values(2)[10]);
@@ -235,12 +234,12 @@ TEST(P21_LeafScattering, AgreesWithRandomLeaves) {
     squares += value * value;
   }
   const double mean = sum / kCount, error = std::sqrt((squares / kCount - mean * mean) / kCount);
-  const pp::LeafScattering leaves{.reflectance = rho, .transmittance = tau};
+  const LeafScattering leaves{.reflectance = rho, .transmittance = tau};
   const Rule rule = halfRangeRule<30>();
   double wanted = 0.;
   for (std::size_t i = 0; i < rule.mus.size(); ++i)
     for (int k = 0; k < 64; ++k)
-      wanted += rule.weights[i] * 2. * kPi / 64. * pp::leafScattering(leaves, -rule.mus[i], mu0, 2. * kPi * k / 64.);
+      wanted += rule.weights[i] * 2. * kPi / 64. * leafScattering(leaves, -rule.mus[i], mu0, 2. * kPi * k / 64.);
   EXPECT_NEAR(mean, wanted, 4. * error);
   EXPECT_LT(error, 2e-3);
 }

@@ -41,7 +41,7 @@ pp::Problem problemOf(const json& given) {
   for (std::size_t i = 0; i < given.at("dtauc").size(); ++i)
     problem.layers.push_back(
         {.thickness = given["dtauc"][i],
-         .medium = pp::Particles{given.at("ssalb").at(i), pp::PhaseFunction::fromMoments(given.at("pmom").at(i))}});
+         .medium = Particles{given.at("ssalb").at(i), PhaseFunction::fromMoments(given.at("pmom").at(i))}});
   if (given.at("fbeam") > 0.)
     problem.beam = pp::Beam{.mu0 = given.at("umu0"),
                             .azimuth = given.at("phi0").get<double>() * std::numbers::pi / 180.,

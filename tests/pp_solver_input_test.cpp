@@ -42,8 +42,8 @@ void expectProblemRefused(const std::string& field, const std::function<void(pp:
   EXPECT_NEAR(solver.reflectance() + solver.transmittance(), 1., 1e-12);
 }
 
-pp::Particles& particles(pp::Problem& problem) {
-  return std::get<pp::Particles>(problem.layers[1].medium);
+Particles& particles(pp::Problem& problem) {
+  return std::get<Particles>(problem.layers[1].medium);
 }
 
 TEST(Input, Layers) {
@@ -137,19 +137,18 @@ TEST(Input, Settings) {
 
 TEST(Input, PhaseFunctions) {
   for (const double asymmetry : {-1., 1., 2., kNan})
-    expectRefused("g =", [=] { (void)pp::PhaseFunction::henyeyGreenstein(asymmetry); });
+    expectRefused("g =", [=] { (void)PhaseFunction::henyeyGreenstein(asymmetry); });
   for (const std::vector<double>& moments : {std::vector<double>{0.5},
                                              {1., 1.1},
                                              {1., -1.1},
                                              {1., kNan},
                                              {1., 0., 0., 0.9}})  // the last is negative somewhere
-    expectRefused("moment", [&] { (void)pp::PhaseFunction::fromMoments(moments); });
+    expectRefused("moment", [&] { (void)PhaseFunction::fromMoments(moments); });
   for (const std::vector<double>& cosines :
        {std::vector<double>{}, {-1.}, {-1., 0.5}, {-0.9, 1.}, {-1., 0.2, 0.1, 1.}, {-1., 0., 0., 1.}, {-1., kNan, 1.}})
-    expectRefused("cosine",
-                  [&] { (void)pp::PhaseFunction::sampled(cosines, std::vector<double>(cosines.size(), 1.)); });
+    expectRefused("cosine", [&] { (void)PhaseFunction::sampled(cosines, std::vector<double>(cosines.size(), 1.)); });
   for (const std::vector<double>& values : {std::vector<double>{1., -1., 1.}, {1., kNan, 1.}, {0., 0., 0.}, {1., 1.}})
-    expectRefused("phase function", [&] { (void)pp::PhaseFunction::sampled({-1., 0., 1.}, values); });
+    expectRefused("phase function", [&] { (void)PhaseFunction::sampled({-1., 0., 1.}, values); });
 }
 
 // Check the places and directions of a question about a solution.

@@ -13,7 +13,7 @@ namespace sunfleck::test {
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 inline pp::Layer hgLayer(double thickness, double albedo, double asymmetry = 0.) {
-  return {.thickness = thickness, .medium = pp::Particles{albedo, pp::PhaseFunction::henyeyGreenstein(asymmetry)}};
+  return {.thickness = thickness, .medium = Particles{albedo, PhaseFunction::henyeyGreenstein(asymmetry)}};
 }
 
 inline pp::Problem slab(double thickness, double albedo, double asymmetry, double mu0) {
@@ -24,7 +24,7 @@ inline pp::Problem slab(double thickness, double albedo, double asymmetry, doubl
 inline pp::Problem threeLayers(double mu0, double azimuth = 0.) {
   pp::Problem problem{.beam = pp::Beam{.mu0 = mu0, .azimuth = azimuth}};
   problem.layers = {hgLayer(0.3, 0.9, 0.5),
-                    {.thickness = 1.5, .medium = pp::Particles{0.99, pp::PhaseFunction::fromMoments({1., 0., 0.1})}},
+                    {.thickness = 1.5, .medium = Particles{0.99, PhaseFunction::fromMoments({1., 0., 0.1})}},
                     hgLayer(0.7, 0.6, -0.3)};
   problem.ground.albedo = 0.3;
   return problem;

@@ -93,9 +93,8 @@ TEST_P(PlaneParallelReference, IsMetByEveryRow) {
     if (g != GetParam()) continue;
     const bool infinite = std::isinf(tau);
     SCOPED_TRACE(testing::Message() << "g " << g << " omega " << omega << " tau " << tau << " mu0 " << mu0);
-    solver.solve(
-        {.layers = {{.thickness = tau, .medium = pp::Particles{omega, pp::PhaseFunction::henyeyGreenstein(g)}}},
-         .beam = pp::Beam{.mu0 = mu0, .irradiance = std::numbers::pi}});
+    solver.solve({.layers = {{.thickness = tau, .medium = Particles{omega, PhaseFunction::henyeyGreenstein(g)}}},
+                  .beam = pp::Beam{.mu0 = mu0, .irradiance = std::numbers::pi}});
     std::vector<double> depths{0.}, radiances;
     if (!infinite) depths = {0., 0.5 * tau, tau};
     if (std::ranges::any_of(expected, [](const Row& row) { return row.quantity.starts_with("I_"); })) {

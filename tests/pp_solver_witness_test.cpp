@@ -30,7 +30,7 @@ int nodesFor(double asymmetry) {
 }
 
 pp::Layer hgLayer(double thickness, double albedo, double asymmetry) {
-  return {.thickness = thickness, .medium = pp::Particles{albedo, pp::PhaseFunction::henyeyGreenstein(asymmetry)}};
+  return {.thickness = thickness, .medium = Particles{albedo, PhaseFunction::henyeyGreenstein(asymmetry)}};
 }
 
 // Check the witnesses against each other: a slab of thickness 64 is semi-infinite at albedo .9, where light decays by
@@ -109,7 +109,7 @@ struct Layers {
                         {0.7, 0.6, henyeyGreensteinMoments(-0.3)}},
              .ground_albedo = ground_albedo};
     problem.layers = {hgLayer(0.3, 0.9, 0.5),
-                      {.thickness = 1.5, .medium = pp::Particles{0.99, pp::PhaseFunction::fromMoments(rayleigh)}},
+                      {.thickness = 1.5, .medium = Particles{0.99, PhaseFunction::fromMoments(rayleigh)}},
                       hgLayer(0.7, 0.6, -0.3)};
     problem.ground.albedo = ground_albedo;
   }

@@ -27,7 +27,6 @@ namespace {
 using namespace sunfleck;
 using namespace sunfleck::pp;
 namespace fs = std::filesystem;
-using Medium = decltype(Layer::medium);
 constexpr double kPi = std::numbers::pi;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -160,8 +159,8 @@ TEST(P12_FirstScattering, IsThePhaseFunction) {
       const float mu0 = std::max(1e-4f, random.uniform());
       const float mu = i % 3 == 0 ? mu0 : i % 3 == 1 ? -mu0 : 2.f * random.uniform() - 1.f;
       const float azimuth = (i % 2 ? 3.14159f : 0.02f) * random.uniform();
-      const double exact = detail::scatteredInto(medium, static_cast<double>(mu), static_cast<double>(mu0),
-                                                 static_cast<double>(azimuth));
+      const double exact =
+          scatteredInto(medium, static_cast<double>(mu), static_cast<double>(mu0), static_cast<double>(azimuth));
       EXPECT_NEAR(static_cast<double>(first.into(mu, mu0, std::cos(azimuth))), exact, tolerance * (exact + 0.1));
     }
     return first.kind;

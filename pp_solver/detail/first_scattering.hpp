@@ -8,14 +8,6 @@
 
 namespace sunfleck::pp::detail {
 
-using Medium = decltype(Layer::medium);
-
-// Share of the light per depth and irradiance across it that a medium turns into a direction [1/sr]: omega p, or Gamma
-// of leaves. mu of the leaving light by its sign, mu0 > 0, azimuth between both [rad].
-double scatteredInto(const Medium& medium, double mu, double mu0, double azimuth);
-// Extinction per depth for a direction [1]: 1, or G of leaves.
-double extinction(const Medium& medium, double mu);
-
 // Light of the beam scattered once, of a source 1, after a depth z in a slab of thickness w, which may be infinite:
 // beam's extinction over its cosine k0, the view's m. Safe for k0 = m, for 0 and for large exponents.
 template <typename Number>

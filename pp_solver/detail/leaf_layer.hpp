@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pp_solver/leaf_scattering.hpp"
+#include "scattering/leaf_scattering.hpp"
 
 namespace sunfleck::pp::detail {
 

@@ -16,7 +16,6 @@
 namespace sunfleck::pp {
 namespace {
 
-using detail::Medium;
 using detail::PowerViews;
 using detail::SlabSampler;
 using detail::SlabTableData;

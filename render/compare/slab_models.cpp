@@ -203,9 +203,8 @@ constexpr std::array kModels{
 }  // namespace
 
 SlabSetup homogeneousSlab(const pp::SlabCase& slab, const pp::Settings& settings) {
-  pp::Layer layer{
-      .thickness = slab.thickness,
-      .medium = pp::Particles{.albedo = slab.albedo, .phase = pp::PhaseFunction::henyeyGreenstein(slab.asymmetry)}};
+  pp::Layer layer{.thickness = slab.thickness,
+                  .medium = Particles{.albedo = slab.albedo, .phase = PhaseFunction::henyeyGreenstein(slab.asymmetry)}};
   return {.problem = {.layers = {std::move(layer)}, .beam = pp::Beam{.mu0 = slab.mu0}},
           .settings = settings,
           .homogeneous = slab};

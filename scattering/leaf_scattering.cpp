@@ -1,4 +1,4 @@
-#include "pp_solver/leaf_scattering.hpp"
+#include "scattering/leaf_scattering.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "core/require.hpp"
 
-namespace sunfleck::pp {
+namespace sunfleck {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -194,4 +194,4 @@ void fillLeafKernel(const LeafProjections& rows, const LeafProjections& columns,
           (kernel.mode == 0 ? rows.mu(i) * columns.mu(j) : sineOf(rows.mu(i)) * sineOf(columns.mu(j)));
 }
 
-}  // namespace sunfleck::pp
+}  // namespace sunfleck

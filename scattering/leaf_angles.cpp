@@ -1,4 +1,4 @@
-#include "pp_solver/leaf_angles.hpp"
+#include "scattering/leaf_angles.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "core/require.hpp"
 
-namespace sunfleck::pp {
+namespace sunfleck {
 namespace {
 
 constexpr double kUpright = 0.5 * std::numbers::pi;
@@ -259,4 +259,4 @@ LeafAngles LeafAngles::named(std::string_view name) {
   return uniform();
 }
 
-}  // namespace sunfleck::pp
+}  // namespace sunfleck

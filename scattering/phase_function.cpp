@@ -1,4 +1,4 @@
-#include "pp_solver/phase_function.hpp"
+#include "scattering/phase_function.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "core/require.hpp"
 
-namespace sunfleck::pp {
+namespace sunfleck {
 namespace {
 
 constexpr double kSphere = 4. * std::numbers::pi;
@@ -132,4 +132,4 @@ int PhaseFunction::orders() const {
   return asymmetry_ == 0. ? 1 : kNoEnd;
 }
 
-}  // namespace sunfleck::pp
+}  // namespace sunfleck

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sunfleck::pp {
+namespace sunfleck {
 
 // How leaves are inclined; their azimuths are uniform. The density g(theta) [1/rad] is over the inclination theta of
 // the leaf's normal to the vertical, 0 .. pi/2, and integrates to 1 (Ross 1981). A value: copies share one rule.
@@ -68,4 +68,4 @@ class LeafAngles {
   std::shared_ptr<const Rule> rule_;
 };
 
-}  // namespace sunfleck::pp
+}  // namespace sunfleck

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-namespace sunfleck::pp {
+namespace sunfleck {
 
 // How a particle scatters: p(cos Theta) [1/sr], its integral over the sphere 1, and its Legendre moments
 // chi_l = 2 pi integral p P_l d(cos Theta), chi_0 = 1, |chi_l| < 1.
@@ -39,4 +39,4 @@ class PhaseFunction {
   std::vector<double> cosines_, values_;  // of samples, or empty
 };
 
-}  // namespace sunfleck::pp
+}  // namespace sunfleck

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "pp_solver/leaf_angles.hpp"
+#include "scattering/leaf_angles.hpp"
 
-namespace sunfleck::pp {
+namespace sunfleck {
 
 // Leaves as Ross 1981 has them: flat, small, bi-Lambertian, the same on both sides. Depth is leaf area index.
 struct LeafScattering {
@@ -82,4 +82,4 @@ struct LeafKernel {
 // the same leaf angles. Allocates only if `kernel` never held as many.
 void fillLeafKernel(const LeafProjections& rows, const LeafProjections& columns, LeafKernel& kernel);
 
-}  // namespace sunfleck::pp
+}  // namespace sunfleck
