@@ -142,6 +142,7 @@ std::vector<ReportPicture> picturesIfPossible(const ValidateOptions& options, co
 }
 
 int runValidate(ValidateOptions& options, const RunOptions& run) {
+  require(options.geometry.sample_directions % 2 == 0, "--directions", options.geometry.sample_directions, "even");
   options.effort.trace = {.paths = static_cast<std::uint64_t>(options.paths), .seed = run.seed, .threads = run.threads};
   const Scene given = readScene(options.scene);
   const std::vector<Scene> scenes = scenesOf(options, given);
@@ -208,8 +209,8 @@ void addValidate(CLI::App& app, RunOptions& options, int& status) {
       ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
   command
       ->add_option("--directions", validate->geometry.sample_directions,
-                   "Sample directions of the G-factor (default 22)")
-      ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
+                   "Sample directions of the G-factor, an even number (default 22)")
+      ->check(numberIn(2., 4096., "an even number, 2 to 4096"));
   command->add_option("--cells", validate->geometry.cells, "Cells along the longest side of a tree (default 16)")
       ->check(numberIn(1., 64., "a whole number, 1 to 64"));
   command->callback([validate, &options, &status] { status = runValidate(*validate, options); });

@@ -1,5 +1,6 @@
 #include "core/directions.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -22,17 +23,46 @@ Axes axesAlong(Direction along) {
           .along = along};
 }
 
-std::vector<Direction> spreadDirections(int count) {
+namespace {
+
+// Moves each axis down the slope of the energy that like charges at both ends of all axes have.
+void relax(std::vector<glm::dvec3>& axes) {
+  constexpr int kSteps = 400;  // the energy of 11 or 24 axes has come to rest by then
+  const auto count = static_cast<double>(axes.size());
+  const double step =
+      1. / (std::sqrt(2. * count) * count);  // the force of a neighbour grows as count, their gap shrinks
+  std::vector<glm::dvec3> forces(axes.size());
+  const auto repulsion = [](glm::dvec3 apart) {
+    const double squared = glm::dot(apart, apart);
+    return apart / (squared * std::sqrt(squared));
+  };
+  for (int k = 0; k < kSteps; ++k) {
+    std::fill(forces.begin(), forces.end(), glm::dvec3(0.));
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const glm::dvec3 near = repulsion(axes[i] - axes[j]), far = repulsion(axes[i] + axes[j]);
+        forces[i] += near + far;
+        forces[j] += far - near;
+      }
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      axes[i] = glm::normalize(axes[i] + step * (forces[i] - axes[i] * glm::dot(axes[i], forces[i])));
+  }
+}
+
+}  // namespace
+
+std::vector<Direction> spreadAxes(int count) {
   assert(count > 0);
-  std::vector<Direction> directions;
-  directions.reserve(static_cast<std::size_t>(count));
+  std::vector<glm::dvec3> axes;
   const double golden_angle = std::numbers::pi * (3. - std::sqrt(5.));
   for (int i = 0; i < count; ++i) {
-    const double z = 1. - (2. * i + 1.) / count;
+    const double z = 1. - (2. * i + 1.) / (2. * count);  // the upper half of 2 count points
     const double r = std::sqrt(1. - z * z);
-    const double azimuth = golden_angle * i;
-    directions.push_back(glm::normalize(glm::vec3(glm::dvec3(r * std::cos(azimuth), r * std::sin(azimuth), z))));
+    axes.emplace_back(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z);
   }
+  if (count <= kMostRelaxedAxes) relax(axes);
+  std::vector<Direction> directions;
+  for (const glm::dvec3& axis : axes) directions.push_back(glm::normalize(glm::vec3(axis)));
   return directions;
 }
 

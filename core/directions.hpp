@@ -21,7 +21,11 @@ struct Axes {
 };
 Axes axesAlong(Direction along);
 
-// `count` > 0 directions spread evenly over the sphere: spherical Fibonacci points (Swinbank & Purser 2006).
-std::vector<Direction> spreadDirections(int count);
+// `count` > 0 axes spread evenly: each stands for itself and for the direction opposite. Up to kMostRelaxedAxes they
+// are moved from spherical Fibonacci points (Swinbank & Purser 2006) until their Coulomb energy hardly falls any more,
+// which for small sets makes the mean of a function of direction a third more accurate; beyond that the points are good
+// enough.
+std::vector<Direction> spreadAxes(int count);
+inline constexpr int kMostRelaxedAxes = 128;
 
 }  // namespace sunfleck

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "grid/neighbours.hpp"
-#include "spp/slab.hpp"
+#include "spp/compensation.hpp"
 
 namespace sunfleck {
 namespace {
@@ -72,19 +72,26 @@ std::vector<float> cellDepths(const CellGrid& grid, std::span<const DeepOpacityM
                               std::span<const glm::vec3> neighbours) {
   std::vector<std::vector<glm::vec3>> met;
   met.reserve(maps.size());
-  for (const DeepOpacityMap& map : maps) met.push_back(neighboursAlong(neighbours, grid.leaves, map.along(), false));
+  for (const DeepOpacityMap& map : maps) met.push_back(neighboursAlong(neighbours, grid.leaves, map.along(), true));
 
-  std::vector<float> depths(grid.count() * maps.size(), 0.f);
+  std::vector<float> depths(2 * grid.count() * maps.size(), 0.f);
   tbb::parallel_for(std::size_t{0}, grid.count(), [&](std::size_t cell) {
     if (!grid.active[cell]) return;
     for (std::size_t j = 0; j < maps.size(); ++j) {
-      float sum = 0.f;
-      forPointsOf(grid, cell, [&](glm::vec3 point) { sum += static_cast<float>(maps[j].counts(point).beyond); });
+      float along = 0.f, against = 0.f;
+      const auto add = [&](glm::vec3 point) {
+        const DeepOpacityMap::Counts counts = maps[j].counts(point);
+        along += static_cast<float>(counts.beyond);
+        against += static_cast<float>(counts.before);
+      };
+      forPointsOf(grid, cell, add);
       for (const glm::vec3& t : met[j]) {
-        if (sum > kOpaque * kPoints) break;
-        forPointsOf(grid, cell, [&](glm::vec3 point) { sum += static_cast<float>(maps[j].counts(point - t).beyond); });
+        if (std::min(along, against) > kOpaque * kPoints) break;
+        forPointsOf(grid, cell, [&](glm::vec3 point) { add(point - t); });
       }
-      depths[cell * maps.size() + j] = sum / kPoints;
+      float* const depth = &depths[2 * (cell * maps.size() + j)];
+      depth[0] = along / kPoints;
+      depth[1] = against / kPoints;
     }
   });
   return depths;
@@ -94,7 +101,12 @@ std::vector<float> cellCompensation(const CellGrid& grid, std::span<const DeepOp
                                     std::span<const float> depths, const DeepOpacityMap& light,
                                     std::span<const glm::vec3> neighbours) {
   const std::vector<glm::vec3> met = neighboursAlong(neighbours, grid.leaves, light.along(), true);
-  constexpr float mu0 = 1.f;  // the slab's normal is the light's axis
+  constexpr float mu0 = 1.f;   // the slab's normal is the light's axis
+  std::vector<float> cosines;  // of both directions of each axis to the direction back to the light
+  for (const DeepOpacityMap& map : maps) {
+    const float cosine = -glm::dot(map.along(), light.along());
+    cosines.insert(cosines.end(), {cosine, -cosine});
+  }
   std::vector<float> compensation(grid.count(), 0.f);
   tbb::parallel_for(std::size_t{0}, grid.count(), [&](std::size_t cell) {
     if (!grid.active[cell]) return;
@@ -108,12 +120,8 @@ std::vector<float> cellCompensation(const CellGrid& grid, std::span<const DeepOp
       add(point);
       for (const glm::vec3& t : met) add(point - t);
     });
-    const float depth = before / kPoints, thickness = (before + beyond) / kPoints;
-    float lost = 0.f;
-    for (std::size_t j = 0; j < maps.size(); ++j)
-      lost += spp::shareBeyondEdge(-glm::dot(maps[j].along(), light.along()), depths[cell * maps.size() + j], depth,
-                                   thickness, mu0);
-    compensation[cell] = std::clamp(1.f - lost / static_cast<float>(maps.size()), 0.f, 1.f);
+    compensation[cell] = spp::compensation(cosines, depths.subspan(cell * cosines.size(), cosines.size()),
+                                           before / kPoints, (before + beyond) / kPoints, mu0);
   });
   return compensation;
 }

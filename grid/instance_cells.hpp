@@ -26,8 +26,9 @@ struct CellGrid {
 CellGrid cellGrid(const TreeMesh& mesh, int resolution);
 
 // (D4) Optical depths from the cells of one instance to the edge of the foliage, Eq. 31: the crossings found in the
-// prototype's maps, summed over the instance itself and its neighbours. Element `cell * maps.size() + j` is the mean
-// number of leaf crossings from the cell outward along maps[j].along() [1]; inactive cells hold 0.
+// prototype's maps, summed over the instance itself and its neighbours. Each map serves both directions of its axis:
+// elements 2 (cell * maps.size() + j) and the next are the mean number of leaf crossings from the cell outward along
+// maps[j].along() and against it [1]; inactive cells hold 0.
 //   neighbours  displacements of the other instances from this one [m]
 std::vector<float> cellDepths(const CellGrid& grid, std::span<const DeepOpacityMap> maps,
                               std::span<const glm::vec3> neighbours);

@@ -34,7 +34,7 @@ StandGeometry standGeometry(const Scene& scene, const GeometryEffort& effort, co
   const auto start_compensation = Clock::now();
   const std::size_t trees = scene.stand.trees.size();
   const std::vector<DeepOpacityMap> maps =
-      deepOpacityMaps(mesh, spreadDirections(effort.sample_directions), effort.sample_resolution);
+      deepOpacityMaps(mesh, spreadAxes(effort.sample_directions / 2), effort.sample_resolution);
   stand.cells = cellGrid(mesh, effort.cells);
   for (std::size_t tree = 0; tree < trees; ++tree) {
     const std::vector<glm::vec3> neighbours = neighbourDisplacements(scene.stand, stand.cells.leaves, tree);

@@ -12,7 +12,7 @@ namespace sunfleck {
 // How finely the geometry is sampled.
 struct GeometryEffort {
   int light_resolution = 512;   // pixels along the longer side of the light's deep opacity map
-  int sample_directions = 22;   // of the G-factor
+  int sample_directions = 22;   // of the G-factor, even: both directions of half as many axes
   int sample_resolution = 256;  // pixels along the longer side of each of their maps
   int cells = 16;               // along the longest side of a tree
 };

@@ -29,7 +29,7 @@ TEST(Directions, SunlightTravelsAwayFromTheSun) {
 
 // Check that axes are orthonormal and right-handed along any direction, the poles included. Error: a few ulp.
 TEST(Directions, AxesAreOrthonormal) {
-  std::vector<Direction> directions = spreadDirections(100);
+  std::vector<Direction> directions = spreadAxes(50);
   directions.push_back({0.f, 0.f, 1.f});
   directions.push_back({0.f, 0.f, -1.f});
   for (const Direction& along : directions) {
@@ -40,15 +40,25 @@ TEST(Directions, AxesAreOrthonormal) {
   }
 }
 
-// Check that spread directions integrate the second moments of the sphere: mean x_i x_j = delta_ij / 3. The bound is
-// 2 / count: the error of spherical Fibonacci points for such smooth functions falls faster than 1 / count.
-TEST(Directions, SpreadDirectionsHaveIsotropicMoments) {
-  for (int count : {16, 22, 48, 200}) {
+// Check that spread axes integrate the second moments of the sphere: mean x_i x_j = delta_ij / 3. Axes of least energy are
+// isotropic but for few of them: 8 are 9e-3 off when they have come to rest (axes at random are 0.1 off). Larger sets are
+// Fibonacci points, whose error for such smooth functions falls faster than 1 / count.
+TEST(Directions, SpreadAxesHaveIsotropicMoments) {
+  for (int count : {6, 8, 11, 24, 100, 200}) {
     glm::dmat3 moments(0.);
-    for (const glm::dvec3 s : spreadDirections(count)) moments += glm::outerProduct(s, s) / double(count);
+    for (const glm::dvec3 s : spreadAxes(count)) moments += glm::outerProduct(s, s) / double(count);
+    const double error = count <= kMostRelaxedAxes ? 1e-2 : 1. / count;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) EXPECT_NEAR(moments[i][j], i == j ? 1. / 3. : 0., 2. / count) << count;
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(moments[i][j], i == j ? 1. / 3. : 0., error) << count;
   }
+}
+
+// Check that six axes are those of an icosahedron, whose neighbours stand acos(1 / sqrt 5) apart: the least energy
+// known. The descent comes within 1e-3 of it.
+TEST(Directions, SixSpreadAxesAreAnIcosahedrons) {
+  const std::vector<Direction> axes = spreadAxes(6);
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NEAR(std::abs(glm::dot(axes[i], axes[j])), std::sqrt(0.2f), 1e-3f);
 }
 
 TEST(LeafOptics, RefusesSharesThatMakeLight) {

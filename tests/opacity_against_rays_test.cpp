@@ -32,10 +32,10 @@ double disagreement(const TreeMesh& mesh, const Direction& along) {
 // chance once in 500 pixels at the worst. One leaf in 500 miscounted would show as much.
 TEST(D3_DeepOpacityMap, CountsAsRaysDo) {
   const TreeMesh crown = randomCrown({.leaves = 3000}, 4);
-  for (const Direction& along : spreadDirections(4)) EXPECT_LT(disagreement(crown, along), 2e-3);
+  for (const Direction& along : spreadAxes(4)) EXPECT_LT(disagreement(crown, along), 2e-3);
   const TreeMesh cherry = grow(species("cherry"), 1);
   EXPECT_LT(disagreement(cherry, {0.f, 0.f, -1.f}), 2e-3);
-  EXPECT_LT(disagreement(cherry, spreadDirections(7)[2]), 2e-3);
+  EXPECT_LT(disagreement(cherry, spreadAxes(7)[2]), 2e-3);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(D3_DeepOpacityMap, CountsBeforeAndBeyondAPoint) {
 // resolution.
 TEST(D3_DeepOpacityMap, KeepsTheProjectedArea) {
   const TreeMesh mesh = randomCrown({}, 3);
-  for (const Direction& along : spreadDirections(5)) {
+  for (const Direction& along : spreadAxes(5)) {
     const DeepOpacityMap map(mesh, along, 512);
     const auto projections = leafProjections(mesh, along);
     const auto areas = leafAreas(mesh);
@@ -163,8 +163,8 @@ TEST(D4_CellDepths, OfAStack) {
   const TreeMesh mesh = stack({0.5f, 0.6f, 0.f, 1.f});
   const CellGrid cells = cellGrid(mesh, 4);
   ASSERT_EQ(cells.size, glm::ivec3(4));
-  const std::vector<Direction> directions{{0.f, 0.f, 1.f}, kDown};
-  const auto maps = deepOpacityMaps(mesh, directions, 64);
+  const std::vector<Direction> axes{{0.f, 0.f, 1.f}};
+  const auto maps = deepOpacityMaps(mesh, axes, 64);
   const auto depths = cellDepths(cells, maps, {});
   const auto depth = [&](int z, std::size_t j) {
     return depths[static_cast<std::size_t>((z * 4 + 1) * 4 + 1) * 2 + j];
@@ -183,7 +183,7 @@ TEST(D4_CellDepths, OfAStack) {
 TEST(D5_CellCompensation, IsHighInAStandAndLowerForALoneTree) {
   const RandomLayer layer{.size = {1.f, 1.f}, .height = 1.f, .leaf_side = 0.05f, .leaf_area_index = 4.f};
   const TreeMesh mesh = randomLayer(layer, 5);
-  const std::vector<Direction> directions = spreadDirections(22);
+  const std::vector<Direction> directions = spreadAxes(11);
   const auto maps = deepOpacityMaps(mesh, directions, 128);
   const DeepOpacityMap light(mesh, kDown, 128);
   const CellGrid cells = cellGrid(mesh, 8);

@@ -1,0 +1,124 @@
+#include "render/compare/direction_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+#include "core/random.hpp"
+#include "grid/instance_cells.hpp"
+#include "grid/neighbours.hpp"
+#include "render/compare/log_plot.hpp"
+#include "render/stand_geometry.hpp"
+
+namespace sunfleck {
+namespace {
+
+constexpr std::array kCounts{8, 16, 22, 32, 48, 64, 96, 192};
+constexpr int kReference = 1024, kTurns = 4;
+constexpr int kResolution = 128;  // pixels of the maps: their error is in the reference alike
+
+// A turn of the sphere, all alike probable (Shoemake 1992).
+glm::quat randomTurn(Random& random) {
+  const float split = random.uniform();
+  const float a = 2.f * std::numbers::pi_v<float> * random.uniform();
+  const float b = 2.f * std::numbers::pi_v<float> * random.uniform();
+  const float low = std::sqrt(1.f - split), high = std::sqrt(split);
+  return {high * std::cos(b), low * std::sin(a), low * std::cos(a), high * std::sin(b)};
+}
+
+// The cells of a scene's first tree, and their G for any axes.
+class Compensated {
+ public:
+  explicit Compensated(const Scene& scene)
+      : mesh_(*scene.tree),
+        cells_(cellGrid(mesh_, GeometryEffort{}.cells)),
+        light_(mesh_, scene.sun(), GeometryEffort{}.light_resolution),
+        neighbours_(neighbourDisplacements(scene.stand, cells_.leaves, 0)) {}
+
+  std::vector<float> by(const std::vector<Direction>& axes) const {
+    const std::vector<DeepOpacityMap> maps = deepOpacityMaps(mesh_, axes, kResolution);
+    return cellCompensation(cells_, maps, cellDepths(cells_, maps, neighbours_), light_, neighbours_);
+  }
+  const std::vector<bool>& active() const { return cells_.active; }
+
+ private:
+  const TreeMesh& mesh_;
+  CellGrid cells_;
+  DeepOpacityMap light_;
+  std::vector<glm::vec3> neighbours_;
+};
+
+}  // namespace
+
+std::vector<DirectionBenchPoint> benchDirections(const Scene& scene, std::uint64_t seed, const Progress& progress) {
+  requireModelled(scene);
+  using Clock = std::chrono::steady_clock;
+  const Compensated tree(scene);
+  const std::vector<float> exact = tree.by(spreadAxes(kReference / 2));
+
+  double work = kReference, done = kReference;
+  for (const int count : kCounts) work += 2. * kTurns * count;
+  Random random(seed, 0);
+  std::vector<DirectionBenchPoint> points;
+  for (const bool spread : {true, false})
+    for (const int count : kCounts) {
+      DirectionBenchPoint point{.directions = count, .spread = spread};
+      double squares = 0.;
+      std::size_t cells = 0;
+      for (int k = 0; k < kTurns; ++k) {
+        if (!goOn(progress, done / work)) return {};
+        std::vector<Direction> axes = spreadAxes(count / 2);
+        const glm::quat turn = randomTurn(random);
+        for (Direction& axis : axes) axis = glm::normalize((spread ? turn : randomTurn(random)) * axis);
+        const auto start = Clock::now();
+        const std::vector<float> found = tree.by(axes);
+        point.seconds += std::chrono::duration<double>(Clock::now() - start).count() / kTurns;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          if (!tree.active()[i]) continue;
+          const double error = double{found[i]} - double{exact[i]};
+          squares += error * error;
+          point.largest_error = std::max(point.largest_error, std::abs(error));
+          ++cells;
+        }
+        done += count;
+      }
+      point.rms_error = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(cells, 1)));
+      points.push_back(point);
+    }
+  return points;
+}
+
+std::string directionBenchCsv(const std::vector<DirectionBenchPoint>& points) {
+  std::string csv = "directions,set,seconds,rms_error,largest_error\n";
+  for (const DirectionBenchPoint& p : points)
+    csv += fmt::format("{},{},{:.4g},{:.4g},{:.4g}\n", p.directions, p.spread ? "spread" : "random", p.seconds,
+                       p.rms_error, p.largest_error);
+  return csv;
+}
+
+std::string directionBenchPlot(const std::vector<DirectionBenchPoint>& points, const std::string& scene) {
+  LogPanel panel{.title = scene + ": RMS error of G over the cells",
+                 .x_title = "sample directions",
+                 .y_title = "RMS error of G [1]",
+                 .curves = {}};
+  for (const bool spread : {true, false}) {
+    LogCurve curve{.label = spread ? "spread axes" : "axes at random",
+                   .colour = spread ? "#1b7837" : "#b2182b",
+                   .dashed = !spread,
+                   .points = {}};
+    for (const DirectionBenchPoint& p : points)
+      if (p.spread == spread)
+        curve.points.push_back({.x = static_cast<double>(p.directions),
+                                .y = p.rms_error,
+                                .mark = spread ? std::to_string(p.directions) : ""});
+    panel.curves.push_back(std::move(curve));
+  }
+  return logPlot("How the G-factor converges with its sample directions; reference: 1,024", {panel}, 1);
+}
+
+}  // namespace sunfleck

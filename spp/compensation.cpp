@@ -1,0 +1,18 @@
+#include "spp/compensation.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "spp/slab.hpp"
+
+namespace sunfleck::spp {
+
+float compensation(std::span<const float> cosines, std::span<const float> edges, float depth, float thickness,
+                   float mu0) {
+  assert(cosines.size() == edges.size() && !cosines.empty());
+  float lost = 0.f;
+  for (std::size_t j = 0; j < cosines.size(); ++j) lost += shareBeyondEdge(cosines[j], edges[j], depth, thickness, mu0);
+  return std::clamp(1.f - lost / static_cast<float>(cosines.size()), 0.f, 1.f);
+}
+
+}  // namespace sunfleck::spp
