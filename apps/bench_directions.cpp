@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/output_folder.hpp"
 #include "apps/terminal.hpp"
 #include "core/whole_file.hpp"
 #include "render/compare/direction_bench.hpp"
@@ -17,8 +18,8 @@ const char* setOf(const DirectionBenchPoint& point) {
 }
 
 std::string table(const std::vector<DirectionBenchPoint>& points) {
-  std::string text = fmt::format("{:>10} {:>8} {:>10} {:>10} {:>14}\n", "directions", "set", "time", "RMS error",
-                                 "largest error");
+  std::string text =
+      fmt::format("{:>10} {:>8} {:>10} {:>10} {:>14}\n", "directions", "set", "time", "RMS error", "largest error");
   for (const DirectionBenchPoint& p : points)
     text += fmt::format("{:>10} {:>8} {:>7.0f} ms {:>10.4f} {:>14.3f}\n", p.directions, setOf(p), 1e3 * p.seconds,
                         p.rms_error, p.largest_error);
@@ -41,6 +42,7 @@ nlohmann::ordered_json json(const std::vector<DirectionBenchPoint>& points) {
 int runBenchDirections(const SceneOptions& options, const std::string& folder_name, const RunOptions& run) {
   const Scene scene = readScene(options);
   const std::filesystem::path folder(folder_name);
+  makeFolder(folder);
   const auto csv = folder / "direction_bench.csv", svg = folder / "direction_bench.svg";
   requireWritable(csv);
   requireWritable(svg);

@@ -4,9 +4,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/bench_directions.hpp"
 #include "apps/commands.hpp"
+#include "apps/output_folder.hpp"
 #include "apps/terminal.hpp"
-#include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "render/compare/slab_bench.hpp"
 
@@ -40,11 +41,8 @@ nlohmann::ordered_json json(const std::vector<SlabBenchPoint>& points) {
 }
 
 int runBenchSlab(const std::string& folder_name, const RunOptions& run) {
-  if (folder_name.empty()) throw InvalidInput("-o: must not be empty");
   const fs::path folder(folder_name);
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw InvalidInput(folder_name + ": cannot be made: " + failure.message());
+  makeFolder(folder);
   requireWritable(folder / "slab_bench.csv");
   requireWritable(folder / "slab_bench.svg");
   const auto points = benchSlabs(terminalProgress("measuring", run.quiet));
@@ -64,12 +62,31 @@ int runBenchSlab(const std::string& folder_name, const RunOptions& run) {
 }  // namespace
 
 void addBench(CLI::App& app, RunOptions& options, int& status) {
-  CLI::App* command = addCommand(app, options, "bench", "Run time against error, as a table, CSV and a plot");
-  auto what = std::make_shared<std::string>("slab"), folder = std::make_shared<std::string>("sunfleck-bench");
-  command->add_option("WHAT", *what, "slab: the plane-parallel solver by its number of streams (default)")
-      ->check(CLI::IsMember({"slab"}));
-  command->add_option("-o", *folder, "Folder for slab_bench.csv and slab_bench.svg (default sunfleck-bench)");
-  command->callback([what, folder, &options, &status] { status = runBenchSlab(*folder, options); });
+  CLI::App* bench = addCommand(app, options, "bench", "Run time against error, as a table, CSV and a plot");
+  auto folder = std::make_shared<std::string>("sunfleck-bench");
+  auto scene = std::make_shared<SceneOptions>();
+  const auto folderOption = [&](CLI::App& command, const std::string& files) {
+    command.add_option("-o", *folder, "Folder for " + files + " (default sunfleck-bench)");
+  };
+  const auto slab = [folder, &options, &status] { status = runBenchSlab(*folder, options); };
+
+  CLI::App* of_slab =
+      addCommand(*bench, options, "slab", "The plane-parallel solver by its number of streams (default)");
+  folderOption(*of_slab, "slab_bench.csv and slab_bench.svg");
+  of_slab->callback(slab);
+
+  CLI::App* of_directions =
+      addCommand(*bench, options, "directions", "The G-factor of a tree's cells by its number of sample directions");
+  folderOption(*of_directions, "direction_bench.csv and direction_bench.svg");
+  addSceneOptions(*of_directions, *scene);
+  of_directions->callback(
+      [scene, folder, &options, &status] { status = runBenchDirections(*scene, *folder, options); });
+
+  folderOption(*bench, "slab_bench.csv and slab_bench.svg");
+  bench->require_subcommand(0, 1);
+  bench->callback([bench, slab] {
+    if (bench->get_subcommands().empty()) slab();
+  });
 }
 
 }  // namespace sunfleck::apps

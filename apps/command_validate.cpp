@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "apps/commands.hpp"
+#include "apps/output_folder.hpp"
 #include "apps/pictures.hpp"
 #include "apps/scene_options.hpp"
 #include "apps/terminal.hpp"
@@ -50,13 +51,6 @@ std::vector<Scene> scenesOf(const ValidateOptions& options, const Scene& given) 
   if (stand == "single") return {single};
   if (stand == "periodic") return {periodic};
   return {single, periodic};
-}
-
-void makeFolder(const fs::path& folder) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw InvalidInput(folder.string() + ": cannot be made: " + failure.message());
-  requireWritable(folder / "report.html");
 }
 
 std::string percent(const std::optional<double>& fraction, const char* sign = "") {
@@ -148,6 +142,7 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
   const std::vector<Scene> scenes = scenesOf(options, given);
   for (const Scene& scene : scenes) requireValidatable(scene, options.effort.band);
   makeFolder(options.folder);
+  requireWritable(fs::path(options.folder) / "report.html");
   std::vector<Validation> validations;
   std::vector<ReportPicture> pictures;
   for (const Scene& scene : scenes) {

@@ -193,6 +193,8 @@ refuses "nowhere" slab --plot nowhere/x.svg
 refuses "folder" bench slab -o empty/folder
 refuses "frobnicate" bench frobnicate
 refuses "must not be empty" bench slab -o ""
+refuses "nosuch" bench directions nosuch -o dirs
+refuses "even" validate cherry --directions 7 -o dirs
 refuses "--frobnicate" tables --frobnicate
 
 # Files of slabs: what is wrong is named by line and field wherever it stands, and leaves nothing behind.

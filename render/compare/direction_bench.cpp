@@ -102,7 +102,7 @@ std::string directionBenchCsv(const std::vector<DirectionBenchPoint>& points) {
 }
 
 std::string directionBenchPlot(const std::vector<DirectionBenchPoint>& points, const std::string& scene) {
-  LogPanel panel{.title = scene + ": RMS error of G over the cells",
+  LogPanel panel{.title = scene + ": G of the cells against 1,024 directions",
                  .x_title = "sample directions",
                  .y_title = "RMS error of G [1]",
                  .curves = {}};
@@ -118,7 +118,7 @@ std::string directionBenchPlot(const std::vector<DirectionBenchPoint>& points, c
                                 .mark = spread ? std::to_string(p.directions) : ""});
     panel.curves.push_back(std::move(curve));
   }
-  return logPlot("How the G-factor converges with its sample directions; reference: 1,024", {panel}, 1);
+  return logPlot("G-factor: error by sample directions", {panel}, 1);
 }
 
 }  // namespace sunfleck
