@@ -9,6 +9,7 @@ namespace sunfleck::pp::detail {
 // A layer between the ordinates, for one azimuth mode, when nothing makes its eigenproblem bidiagonal.
 struct DenseMedium {
   double albedo = 0., loss = 1.;   // omega and 1 - omega
+  double planck_slope = 0.;        // dB/dz
   std::vector<double> extinction;  // G of each node
   std::vector<double> even, odd;   // E and O of (P21) [i * n + j]; of mode 0, even is E / omega
 };
