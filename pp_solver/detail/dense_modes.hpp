@@ -16,8 +16,8 @@ struct DenseMedium {
 
 // (P10) Eigenmodes of such a layer: b = L L^T, L^T a L y = k^2 y with a = M^-1/2 (G - W^1/2 E W^1/2) M^-1/2 and b
 // likewise of O; x = L y, y = L^-T y as node values. Where next to nothing is absorbed the constant field is taken out
-// before the eigenproblem is solved, since its k is known better than its digits. Throws InvalidInput where b is not
-// positive: then the ordinates cannot carry this phase function.
+// before the eigenproblem is solved, since its k is known better than its digits. (P14) h = -dB/dz b^-1 1. Throws
+// InvalidInput where b is not positive: then the ordinates cannot carry this phase function.
 void denseModes(const BasisRows& basis, LayerRows& row, const DenseMedium& medium, const std::vector<double>& weight);
 
 }  // namespace sunfleck::pp::detail
