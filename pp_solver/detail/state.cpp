@@ -16,8 +16,8 @@ using detail::ScaledLayer;
 using detail::StackRows;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kLeastSloped =
-    1e-6;  // rounding of h (P14) is 1e-16 (dB/dz): below, it would exceed what the slope does
+// Rounding of h (P14) goes as 1 / w: in thinner layers it would exceed what the slope does.
+constexpr double kLeastSloped = 1e-6;
 
 }  // namespace
 
