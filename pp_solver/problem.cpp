@@ -65,12 +65,11 @@ void requireLayer(const Problem& problem, std::size_t index) {
   is.share(leaves.transmittance, "transmittance");
   is.require(leaves.reflectance + leaves.transmittance <= 1., "reflectance + transmittance",
              leaves.reflectance + leaves.transmittance, "at most 1");
-  is.require(layer.emission_top == layer.emission_bottom, "emission_bottom", layer.emission_bottom,
-             "emission_top in a layer of leaves");
   is.require(std::isfinite(leaves.hot_spot) && leaves.hot_spot >= 0., "hot_spot", leaves.hot_spot,
              "finite and no less than 0");
   const bool alone = problem.layers.size() == 1 && !infinite && isDark(problem.above) && isDark(problem.below) &&
-                     !problem.ground.brdf && problem.ground.emission == 0. && layer.emission_top == 0.;
+                     !problem.ground.brdf && problem.ground.emission == 0. && layer.emission_top == 0. &&
+                     layer.emission_bottom == 0.;
   is.require(leaves.hot_spot == 0. || alone, "hot_spot", leaves.hot_spot,
              "0 but in a single finite layer lit by the beam alone, on a Lambertian ground");
 }

@@ -22,7 +22,8 @@ struct Layer {
   // to 1e100; infinity is allowed for the last layer.
   double thickness = 1.;
   Medium medium;
-  // Planck radiance B at the top and at the bottom [radiance]; linear between. The layer emits (1 - omega) B.
+  // Planck radiance B at the top and at the bottom [radiance]; linear between, the mean of both where the layer is
+  // thinner than 1e-6. The layer emits (1 - omega) B.
   double emission_top = 0., emission_bottom = 0.;
 };
 

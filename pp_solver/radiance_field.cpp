@@ -143,6 +143,23 @@ void Tracer::viewThroughLayer(const BasisRows& rows, LayerRows& row, std::size_t
     down[i] *= share;
     up[i] *= share;
   }
+  for (int lane = 0; lane < lanes; ++lane) {
+    if (row.planck_top[lane] == 0. && row.planck_bottom[lane] == 0.) continue;
+    const double slope = s_.planckSlope(row, lane), w = s_.layers[p].thickness;
+    double turned = -mu * slope;  // h along mu (P14)
+    if (row.given_modes) {
+      for (int i = 0; i < s_.n; ++i) turned += odd[i] * row.drift[i] / rows.mu_root[i];
+      turned *= share;
+    } else {
+      turned /= row.loss[1 * lanes + lane];
+    }
+    const double top = row.planck_top[lane] + turned, bottom = row.planck_bottom[lane] - turned;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double z = levels_[p].z[i];
+      down[i * lanes + lane] += slope * z - top * std::expm1(-m * z);
+      up[i * lanes + lane] += std::isinf(w) ? bottom : slope * (z - w) - bottom * std::expm1(-m * (w - z));
+    }
+  }
   if (s_.settings.corrections || sine || s_.beam == 0.) return;
   for (int lane = 0; lane < lanes; ++lane) {
     double same, opposite;  // source of the beam's first scattering into mu, downward and upward
@@ -167,25 +184,18 @@ void Tracer::followDirection(const BasisRows& rows, StackRows& stack, double mu,
   for (int lane = 0; lane < lanes; ++lane) {
     double carried = 0.;
     for (std::size_t p = 0; p < layers; ++p) {
-      const LayerRows& row = stack.layer[p];
-      const double m = viewRate(p, mu), w = s_.layers[p].thickness;
-      const double b0 = row.planck_top[lane], bw = row.planck_bottom[lane], drift = row.planck_drift[lane] * mu;
-      const double entering = carried - (b0 + drift);
+      const double m = viewRate(p, mu), entering = carried;
       for (std::size_t i = 0; i < levels_[p].z.size(); ++i) {
-        const double z = levels_[p].z[i], emitted = b0 + (std::isinf(w) ? 0. : (bw - b0) * z / w) + drift;
-        carried = entering * std::exp(-m * z) + down_in[p][i * lanes + lane] + emitted;
+        carried = entering * std::exp(-m * levels_[p].z[i]) + down_in[p][i * lanes + lane];
         if (levels_[p].output[i] >= 0) down[levels_[p].output[i] * lanes + lane] = carried;
       }
     }
     carried = s_.groundRadiance(rows, stack, lane, mu, sine);
     for (std::size_t p = layers; p-- > 0;) {
-      const LayerRows& row = stack.layer[p];
-      const double m = viewRate(p, mu), w = s_.layers[p].thickness;
-      const double b0 = row.planck_top[lane], bw = row.planck_bottom[lane], drift = row.planck_drift[lane] * mu;
-      const double entering = std::isinf(w) ? 0. : carried - (bw - drift);
+      const double m = viewRate(p, mu), w = s_.layers[p].thickness, entering = carried;
       for (std::size_t i = levels_[p].z.size(); i-- > 0;) {
-        const double z = levels_[p].z[i], emitted = b0 + (std::isinf(w) ? 0. : (bw - b0) * z / w) - drift;
-        carried = (std::isinf(w) ? 0. : entering * std::exp(-m * (w - z))) + up_in[p][i * lanes + lane] + emitted;
+        const double z = levels_[p].z[i];
+        carried = (std::isinf(w) ? 0. : entering * std::exp(-m * (w - z))) + up_in[p][i * lanes + lane];
         if (levels_[p].output[i] >= 0) up[levels_[p].output[i] * lanes + lane] = carried;
       }
     }

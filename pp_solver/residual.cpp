@@ -102,7 +102,7 @@ double Solver::residual(int modes) {
             difference += row.y_hat[j * rows.row + i] * s.v_row[j];
           }
           sum = sum / rows.flat[i] + 2. * planck;
-          difference = difference / rows.flat[i] + 2. * row.planck_drift[0] * mu[i];
+          difference = (difference + 2. * row.drift[i]) / rows.flat[i];
           down[i] = 0.5 * (sum + difference);
           up[i] = 0.5 * (sum - difference);
         }

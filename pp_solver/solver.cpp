@@ -67,9 +67,6 @@ void Solver::solve(const Problem& problem) {
   State& s = *state_;
   s.solved = false;
   requireSolvable(problem);
-  for (const Layer& layer : problem.layers)
-    require(!s.settings.collocation || layer.emission_top == layer.emission_bottom, "emission_bottom",
-            layer.emission_bottom, "emission_top with collocation");
   s.dropLeafTables(problem);
   s.problem = problem;
   s.mu0 = problem.beam ? problem.beam->mu0 : 1.;
@@ -161,9 +158,8 @@ Fluxes Solver::fluxes(double depth) const {
   }
   const double share = layer.thickness > 0. && !std::isinf(layer.thickness) ? z / layer.thickness : 0.;
   const double planck = row.planck_top[0] + share * (row.planck_bottom[0] - row.planck_top[0]);
-  double slope = 0.;
-  for (int i = 0; i < s.n; ++i) slope += s.basis.flat[i] * s.basis.slope[i];
-  const double drift = 2. * kPi * row.planck_drift[0] * slope;
+  double drift = 0.;
+  for (int i = 0; i < s.n; ++i) drift += 2. * kPi * s.basis.flat[i] * row.drift[i];
   const double scaled = s.beam * s.scaledBeam(p, inside), direct = s.beam * s.mu0 * s.trueBeam(depth);
   Fluxes fluxes;
   fluxes.up = detail::withoutRounding(kPi * (sum - difference + planck) - drift, std::abs(sum) + std::abs(difference));

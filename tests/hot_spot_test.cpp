@@ -4,15 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <numbers>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "core/random.hpp"
 #include "core/require.hpp"
@@ -124,36 +120,60 @@ TEST(P22_HotSpot, AgreesWithRandomDiscs) {
   EXPECT_GT(found, turbid + 5. * error);
 }
 
-// A traced canopy of discs, spherical, leaf area index 3, radius 0.1 of the height: reflectance by one leaf or by the
-// soil alone. Exponentials in place of the discs' own overlap leave 2 % (leaves, measured 1.8) and 0.01 of the soil's
-// (measured 0.004, 0.009 at most); without a hot spot it is 18 % and 0.035.
+// A periodic canopy of 59,683 leaves, discs of radius 0.1 of its height thrown at random, spherical, leaf area index 3,
+// traced by Monte Carlo with 400,000 paths for each view; the sun at 20 degrees. Reflectance factors by one leaf (to
+// 2e-3 of it), and by the soil alone (standard error at most 1e-4).
+struct TracedView {
+  double view;  // zenith angle [degree], above 0 on the sun's side
+  double leaf, soil;
+};
+struct TracedCanopy {
+  double reflectance, transmittance, soil_albedo;
+  std::array<TracedView, 7> views;
+};
+constexpr std::array kTraced{TracedCanopy{0.4957,
+                                          0.4409,
+                                          0.159,
+                                          {{{-60., 0.1487061, 0.0016166},
+                                            {-30., 0.1492958, 0.0060102},
+                                            {0., 0.1901970, 0.0089191},
+                                            {20., 0.2810301, 0.0322671},
+                                            {25., 0.2549918, 0.0160884},
+                                            {45., 0.2165750, 0.0045534},
+                                            {70., 0.2189932, 0.0004190}}}},
+                             TracedCanopy{0.0546,
+                                          0.0149,
+                                          0.127,
+                                          {{{-60., 0.0127449, 0.0012970},
+                                            {-30., 0.0156388, 0.0047876},
+                                            {0., 0.0209941, 0.0071749},
+                                            {20., 0.0309995, 0.0256997},
+                                            {25., 0.0280984, 0.0129165},
+                                            {45., 0.0237381, 0.0036481},
+                                            {70., 0.0228472, 0.0003270}}}}};
+
+// Exponentials in place of the discs' own overlap leave 1.8 % rms of the leaves' light and 0.0037 of the soil's;
+// without a hot spot it is 23 % and 0.066.
 TEST(P22_HotSpot, IsNearTracedDiscs) {
-  const std::string file = std::string(SUNFLECK_SOURCE_DIR) + "/../shared/reference/canopy_brf.csv";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
   double with = 0., without = 0., soil_with = 0., soil_without = 0.;
   int count = 0;
-  while (std::getline(in, line)) {
-    std::vector<double> v;
-    std::istringstream cells(line.substr(line.find(',') + 1));
-    for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
-    const double mu0 = std::cos(v[0] * kPi / 180.), mu = std::cos(v[1] * kPi / 180.);
-    const LeafScattering leaves{.reflectance = v[2], .transmittance = v[3], .hot_spot = 0.2};
-    const pp::SunAndView at{.thickness = 3., .mu0 = mu0, .mu = mu, .azimuth = v[1] > 0. ? kPi : 0.};
-    const ScatteredOnce turbid = scatteredOnceTurbid(leaves, at), excess = hotSpotExcess(leaves, at);
-    with += std::pow(kPi * (turbid.leaves + excess.leaves) / mu0 / v[7] - 1., 2);
-    without += std::pow(kPi * turbid.leaves / mu0 / v[7] - 1., 2);
-    soil_with += std::pow(turbid.gap + excess.gap - v[9] / v[4], 2);
-    soil_without += std::pow(turbid.gap - v[9] / v[4], 2);
-    ++count;
-  }
-  ASSERT_GT(count, 50);
+  for (const TracedCanopy& canopy : kTraced)
+    for (const auto& [view, leaf, soil] : canopy.views) {
+      const double mu0 = std::cos(20. * kPi / 180.), mu = std::cos(view * kPi / 180.);
+      const LeafScattering leaves{
+          .reflectance = canopy.reflectance, .transmittance = canopy.transmittance, .hot_spot = 0.2};
+      const pp::SunAndView at{.thickness = 3., .mu0 = mu0, .mu = mu, .azimuth = view > 0. ? kPi : 0.};
+      const ScatteredOnce turbid = scatteredOnceTurbid(leaves, at), excess = hotSpotExcess(leaves, at);
+      with += std::pow(kPi * (turbid.leaves + excess.leaves) / mu0 / leaf - 1., 2);
+      without += std::pow(kPi * turbid.leaves / mu0 / leaf - 1., 2);
+      soil_with += std::pow(turbid.gap + excess.gap - soil / canopy.soil_albedo, 2);
+      soil_without += std::pow(turbid.gap - soil / canopy.soil_albedo, 2);
+      ++count;
+    }
   EXPECT_LT(std::sqrt(with / count), 0.025);
-  EXPECT_GT(std::sqrt(without / count), 0.1);
-  EXPECT_LT(std::sqrt(soil_with / count), 0.006);
-  EXPECT_GT(std::sqrt(soil_without / count), 0.03);
+  EXPECT_GT(std::sqrt(without / count), 0.2);
+  EXPECT_LT(std::sqrt(soil_with / count), 0.005);
+  EXPECT_GT(std::sqrt(soil_without / count), 0.06);
 }
 
 // The hemisphere by other rules: adaptive in the zenith angle where nothing depends on the azimuth, and midpoints,

@@ -214,63 +214,6 @@ TEST(Limit, GrazingAndVerticalLinesOfSight) {
   EXPECT_NEAR(solver.radiance(1., 1., 0.), solver.radiance(1., 1., 2.), 1e-14);
 }
 
-// Check a closed cavity of one temperature, where radiance is B everywhere whatever scatters (Kirchhoff).
-TEST(Emission, OfAnIsothermalCavityIsBlackbodyRadiance) {
-  constexpr double B = 2.5;
-  pp::Solver solver({.streams = 16});
-  for (const double albedo : {0., 0.6, 1. - 1e-10, 1.})
-    for (const double ground_albedo : {0., 0.7, 1.}) {
-      SCOPED_TRACE(testing::Message() << "omega " << albedo << " ground " << ground_albedo);
-      pp::Problem problem{.above = B};
-      for (const double asymmetry : {0.5, 0., -0.8}) {
-        problem.layers.push_back(hgLayer(0.8, albedo, asymmetry));
-        problem.layers.back().emission_top = problem.layers.back().emission_bottom = B;
-      }
-      problem.ground.albedo = ground_albedo;
-      problem.ground.emission = B;
-      solver.solve(problem);
-      for (const double depth : {0., 0.5, 0.8, 2.4}) {
-        const pp::Fluxes fluxes = solver.fluxes(depth);
-        EXPECT_NEAR(fluxes.up, pi * B, 1e-12) << depth;
-        EXPECT_NEAR(fluxes.down, pi * B, 1e-12) << depth;
-        EXPECT_NEAR(fluxes.mean_intensity, B, 1e-12) << depth;
-        for (const double mu : {-1., -0.37, -0.01, 0.01, 0.37, 1.})
-          EXPECT_NEAR(solver.radiance(depth, mu, 1.), B, 1e-12) << depth << " mu " << mu;
-      }
-    }
-}
-
-// Check emission linear in depth without scattering: I(0, -mu) = B0 + B1 mu (1 - e^(-w/mu)) - B0 e^(-w/mu) - ... in
-// closed form, and the ground behind it.
-TEST(Emission, LinearInDepthIsIntegrated) {
-  pp::Solver solver({.streams = 16});
-  pp::Problem problem{.layers = {hgLayer(1.5, 0.)}};
-  problem.layers[0].emission_top = 1.;
-  problem.layers[0].emission_bottom = 4.;
-  problem.ground.emission = 5.;
-  solver.solve(problem);
-  const double slope = 2.;
-  for (const double mu : {1., 0.5, 0.05}) {
-    const double left = std::exp(-1.5 / mu);
-    EXPECT_NEAR(solver.radiance(0., -mu, 0.), 1. + slope * mu - (4. + slope * mu) * left + 5. * left, 1e-12) << mu;
-    EXPECT_NEAR(solver.radiance(1.5, mu, 0.), 4. - slope * mu - (1. - slope * mu) * left, 1e-12) << mu;
-  }
-}
-
-// Check that a semi-infinite isothermal slab emits what it does not reflect of a sky: Kirchhoff's law again, open
-// above.
-TEST(Emission, OfASemiInfiniteSlabIsOneLessReflectance) {
-  pp::Solver solver({.streams = 16});
-  for (const double albedo : {0.3, 0.99}) {
-    solver.solve({.layers = {hgLayer(kInfinity, albedo, 0.5)}, .above = 1.});
-    const double reflectance = solver.reflectance();
-    pp::Problem problem{.layers = {hgLayer(kInfinity, albedo, 0.5)}};
-    problem.layers[0].emission_top = problem.layers[0].emission_bottom = 1.;
-    solver.solve(problem);
-    EXPECT_NEAR(solver.fluxes(0.).up, pi * (1. - reflectance), 1e-12) << albedo;
-  }
-}
-
 // Check that a Lambertian ground may be given as a BRDF.
 TEST(Ground, LambertiansBrdfIsItsAlbedoOverPi) {
   pp::Solver solver({.streams = 16});

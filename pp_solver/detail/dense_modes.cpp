@@ -35,6 +35,8 @@ void denseModes(const BasisRows& basis, LayerRows& row, const DenseMedium& mediu
   const Eigen::LLT<Matrix> factor(b);
   require(factor.info() == Eigen::Success, "streams", 2 * n,
           "more, or without collocation: they do not carry this phase function");
+  const Vector drift = factor.solve(constant);
+  for (int i = 0; i < n; ++i) row.drift[i] = -medium.planck_slope * drift[i];
   const Matrix lower = factor.matrixL();
   Matrix c = lower.transpose() * a * lower;
   Matrix turned = Matrix::Identity(n, n);

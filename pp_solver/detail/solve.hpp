@@ -181,12 +181,11 @@ inline void particular(const BasisRows& basis, const LayerRows& layer, Vec* mode
                        Vec* s_bottom, Vec* d_bottom) {
   const int n = basis.n, width = rowWidth<S>(n);
   const S rate = numbers<S>(rows(layer.rate))[0], thickness = numbers<S>(rows(layer.thickness))[0];
-  const S planck_top = numbers<S>(rows(layer.planck_top))[0], planck_bottom = numbers<S>(rows(layer.planck_bottom))[0],
-          drift = numbers<S>(rows(layer.planck_drift))[0];
+  const S planck_top = numbers<S>(rows(layer.planck_top))[0], planck_bottom = numbers<S>(rows(layer.planck_bottom))[0];
   for (int k = 0; k < width; ++k) {
     s_top[k] = 2. * planck_top * rows(basis.flat)[k];
     s_bottom[k] = 2. * planck_bottom * rows(basis.flat)[k];
-    d_top[k] = d_bottom[k] = 2. * drift * rows(basis.slope)[k];
+    d_top[k] = d_bottom[k] = 2. * rows(layer.drift)[k];
   }
   Vec* work = modes;
   for (int k = 0; k < width; ++k) work[k] = rows(layer.a)[k] - rows(layer.g)[k];

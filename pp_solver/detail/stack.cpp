@@ -57,7 +57,6 @@ BasisRows::BasisRows(const Ordinates& ordinates, int first_mode, bool successive
   peak = memory.take(lanes);
   mode = memory.take(lanes);
   flat = memory.take(row);
-  slope = memory.take(row);
   mu_root = memory.take(row);
   for (int lane = 0; lane < lanes; ++lane) {
     // Modes beyond the last have no light; any that exists stands in.
@@ -70,7 +69,6 @@ BasisRows::BasisRows(const Ordinates& ordinates, int first_mode, bool successive
       alpha[i * lanes + lane] = basis.alpha[i];
       beta[i * lanes + lane] = basis.beta[i];
       flat[i * lanes + lane] = std::sqrt(weight * mu);
-      slope[i * lanes + lane] = mu * std::sqrt(weight * mu);
       mu_root[i * lanes + lane] = std::sqrt(mu);
       for (int j = 0; j < n; ++j) {
         const std::size_t from = static_cast<std::size_t>(i) * n + j, to = i * row + j * lanes + lane;
@@ -101,13 +99,28 @@ void shape(StackRows& stack, const BasisRows& basis, int layers) {
   for (LayerRows& layer : stack.layers_held) {
     layer = {};
     for (double** p : {&layer.scatter, &layer.loss}) *p = take(2 * n * lanes);
-    for (double** p : {&layer.thickness, &layer.rate, &layer.planck_top, &layer.planck_bottom, &layer.planck_drift})
-      *p = take(lanes);
+    for (double** p : {&layer.thickness, &layer.rate, &layer.planck_top, &layer.planck_bottom}) *p = take(lanes);
     for (double** p : {&layer.x, &layer.y, &layer.x_hat, &layer.y_hat, &layer.factor}) *p = take(square);
-    for (double** p :
-         {&layer.even_source, &layer.odd_source, &layer.k, &layer.k2, &layer.x_flux, &layer.y_flux, &layer.x_mean,
-          &layer.x_absorb, &layer.a, &layer.g, &layer.s, &layer.t, &layer.through, &layer.u_top, &layer.u_bottom,
-          &layer.v_top, &layer.v_bottom, &layer.factor_inverse, &layer.remainder})
+    for (double** p : {&layer.drift,
+                       &layer.even_source,
+                       &layer.odd_source,
+                       &layer.k,
+                       &layer.k2,
+                       &layer.x_flux,
+                       &layer.y_flux,
+                       &layer.x_mean,
+                       &layer.x_absorb,
+                       &layer.a,
+                       &layer.g,
+                       &layer.s,
+                       &layer.t,
+                       &layer.through,
+                       &layer.u_top,
+                       &layer.u_bottom,
+                       &layer.v_top,
+                       &layer.v_bottom,
+                       &layer.factor_inverse,
+                       &layer.remainder})
       *p = take(row);
     layer.ends = take(4 * row);
   }

@@ -31,13 +31,13 @@ class RowMemory {
 // DiscreteLegendre of `lanes` azimuth modes (first_mode + lane), or of one mode in all lanes, as rows.
 struct BasisRows {
   int n = 0, lanes = 1;
-  std::size_t row = 0;             // numbers in a row of n, padding included
-  double *alpha, *beta;            // [n]
-  double *even, *odd;              // n rows over the nodes
-  double *even_rise, *odd_rise;    // n rows over the order
-  double *up, *down, *norm;        // [2 n]
-  double *peak, *mode;             // one for each lane
-  double *flat, *slope, *mu_root;  // rows over the nodes: sqrt(w mu), mu sqrt(w mu), sqrt(mu)
+  std::size_t row = 0;           // numbers in a row of n, padding included
+  double *alpha, *beta;          // [n]
+  double *even, *odd;            // n rows over the nodes
+  double *even_rise, *odd_rise;  // n rows over the order
+  double *up, *down, *norm;      // [2 n]
+  double *peak, *mode;           // one for each lane
+  double *flat, *mu_root;        // rows over the nodes: sqrt(w mu), sqrt(mu)
   RowMemory memory;
   BasisRows(const Ordinates& ordinates, int first_mode, bool successive, int vector_lanes, bool wide);
 };
@@ -52,7 +52,8 @@ struct LayerRows {
   double* rate;       // kappa = G(mu0) / mu0 of the beam [1 per lane]
   double *even_source,
       *odd_source;  // rows in the basis: the beam's source J+ + J- and J+ - J-, times sqrt(w), at the top
-  double *planck_top, *planck_bottom, *planck_drift;  // B at both ends, -(dB/dz) / loss[1] [1 per lane]
+  double *planck_top, *planck_bottom;  // B at both ends [1 per lane]
+  double* drift;                       // hat of h, what dB/dz turns downward (P14): row over the nodes
   bool infinite = false;
   bool given_modes = false;  // k2, x, y are given, in node space
 

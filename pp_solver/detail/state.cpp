@@ -16,6 +16,8 @@ using detail::ScaledLayer;
 using detail::StackRows;
 
 constexpr double kPi = std::numbers::pi;
+// Rounding of h (P14) goes as 1 / w: in thinner layers it would exceed what the slope does.
+constexpr double kLeastSloped = 1e-6;
 
 }  // namespace
 
@@ -55,6 +57,11 @@ double Solver::State::skyMode(const Sky& sky, int m, double mu, bool sine) const
     sum += radiance * (sine ? std::sin(m * phi) : std::cos(m * phi));
   }
   return (m == 0 ? 1. : 2.) * sum / samples;
+}
+
+double Solver::State::planckSlope(const LayerRows& row, int lane) {
+  const double difference = row.planck_bottom[lane] - row.planck_top[lane];
+  return difference == 0. ? 0. : difference / row.thickness[lane];
 }
 
 double Solver::State::scaledBeam(std::size_t index, double depth_in_layer) const {
@@ -107,12 +114,12 @@ void Solver::State::fillLayer(const BasisRows& rows, LayerRows& row, std::size_t
     first[lane] = legendreStart(rows, lane, mu0) * amplitude * (m == 0 ? 1. : 2.) / (2. * kPi);
     const Layer& given = problem.layers[index];
     const bool emits = m == 0 && !sine;
-    row.planck_top[lane] = emits ? given.emission_top : 0.;
-    row.planck_bottom[lane] = emits ? given.emission_bottom : 0.;
-    row.planck_drift[lane] =
-        emits && given.emission_top != given.emission_bottom
-            ? -(given.emission_bottom - given.emission_top) / (layer.thickness * row.loss[1 * lanes + lane])
-            : 0.;
+    const bool mean = layer.thickness < kLeastSloped;
+    const double at_mean = 0.5 * given.emission_top + 0.5 * given.emission_bottom;
+    row.planck_top[lane] = !emits ? 0. : mean ? at_mean : given.emission_top;
+    row.planck_bottom[lane] = !emits ? 0. : mean ? at_mean : given.emission_bottom;
+    const double drift = -planckSlope(row, lane) / row.loss[1 * lanes + lane];
+    for (int i = 0; i < n; ++i) row.drift[i * lanes + lane] = drift * ordinates->mu()[i] * rows.flat[i * lanes + lane];
   }
   if (layer.leaves || settings.collocation) {
     fillDense(rows, row, index, amplitude);
@@ -127,7 +134,10 @@ void Solver::State::fillDense(const BasisRows& rows, LayerRows& row, std::size_t
   const auto& weight = ordinates->weight();
   const double share = amplitude * (m == 0 ? 1. : 2.) / (2. * kPi);
   std::vector<double> even(n), odd(n);
-  detail::DenseMedium medium{.albedo = 1. - layer.loss, .loss = layer.loss, .extinction = std::vector<double>(n, 1.)};
+  detail::DenseMedium medium{.albedo = 1. - layer.loss,
+                             .loss = layer.loss,
+                             .planck_slope = planckSlope(row, 0),
+                             .extinction = std::vector<double>(n, 1.)};
   if (layer.leaves) {
     detail::LeafTables& table = *tables[index];
     const auto& leaves = std::get<LeafScattering>(problem.layers[index].medium);

@@ -61,6 +61,9 @@ struct Solver::State {
   // Azimuth mode m of diffuse light that arrives along mu, phi counted from the beam's azimuth.
   double skyMode(const Sky& sky, int m, double mu, bool sine) const;
 
+  // dB/dz of a layer, by scaled depth (P14).
+  static double planckSlope(const detail::LayerRows& row, int lane);
+
   // Attenuation of the beam as the scaled medium has it, at the top of layer `index` or at a depth within it.
   double scaledBeam(std::size_t index, double depth_in_layer = 0.) const;
   double trueBeam(double depth_below_top) const;
