@@ -305,12 +305,13 @@ TEST(S9_ModeField, HoldsInSinglePrecision) {
             for (float part : {0.f, 0.3f, 1.f}) {
               const float z = part == 0.f ? 0.f : part * std::min(w, 1e9f);
               const auto expected = exact.light(double{z});
-              const auto [down, up, flux_down, flux_up, direct] = slab.light(z);
-              ASSERT_TRUE(std::isfinite(down + up + flux_down + flux_up + direct));
+              const auto [down, up, flux_down, flux_up, direct, leaf_irradiance] = slab.light(z);
+              ASSERT_TRUE(std::isfinite(down + up + flux_down + flux_up + direct + leaf_irradiance));
               worst_power =
                   std::max({worst_power, std::abs(double{down} - expected.power_down),
                             std::abs(double{up} - expected.power_up), std::abs(double{flux_down} - expected.flux_down),
-                            std::abs(double{flux_up} - expected.flux_up), std::abs(double{direct} - expected.direct)});
+                            std::abs(double{flux_up} - expected.flux_up), std::abs(double{direct} - expected.direct),
+                            std::abs(double{leaf_irradiance} - expected.leaf_irradiance)});
               for (double mu : {-1., -0.01, 1e-6, 0.5, mu0}) {
                 const double radiance = exact.refinedRadiance(double{z}, exact.view(mu, 1.));
                 const double single = double{slab.refinedRadiance(z, slab.view(mu, 1.))};
