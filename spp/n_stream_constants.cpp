@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "core/require.hpp"
 #include "scattering/double_gauss.hpp"
@@ -34,10 +35,11 @@ struct LegendreRows {
   }
 };
 
-void addParticles(StreamConstants& constants, detail::StreamSystem system, int orders) {
+// False where there are no modes.
+bool addParticles(StreamConstants& constants, detail::StreamSystem system, int orders,
+                  const detail::ScaledPhase& scaled) {
   const auto& particles = std::get<Particles>(constants.beam.medium);
   const Index n = system.cosines.size();
-  const detail::ScaledPhase scaled(particles, static_cast<int>(n));
   constants.depth_scale = scaled.depth_scale;
   system.beam_rate = constants.beam_rate = 1. / constants.beam.mu0;
   constants.beam_projection = 0.5;
@@ -56,9 +58,17 @@ void addParticles(StreamConstants& constants, detail::StreamSystem system, int o
     const VectorXd source = beamFactor(m) * scaled.albedo * scaled.beam_moments.tail(rows).cwiseProduct(at_beam);
     system.even_source = functions.even.transpose() * source;
     system.odd_source = functions.odd.transpose() * source;
+    // A series too short for its peak may send more than all of the beam's scattering to one half, and less than none
+    // to the other.
+    if (m == 0) {
+      const double all = system.weights.dot(system.even_source), net = std::abs(system.weights.dot(system.odd_source));
+      if (net > all) system.odd_source *= all / net;
+    }
     system.albedo = m == 0 ? scaled.albedo : 0.;
     system.lost = scaled.lost;
-    constants.orders.push_back(detail::streamModes(system));
+    std::optional<StreamModes> modes = detail::streamModes(system);
+    if (!modes) return false;
+    constants.orders.push_back(*std::move(modes));
 
     const VectorXd seen = 0.5 * particles.albedo * scaled.true_moments.tail(rows);
     std::vector<double>& stored = constants.moments.emplace_back();
@@ -66,6 +76,7 @@ void addParticles(StreamConstants& constants, detail::StreamSystem system, int o
       for (Index i = 0; i < n; ++i)
         stored.push_back(seen[r] * system.weights[i] * (functions.even(r, i) + functions.odd(r, i)));
   }
+  return true;
 }
 
 void addLeaves(StreamConstants& constants, detail::StreamSystem system, int orders) {
@@ -94,9 +105,10 @@ void addLeaves(StreamConstants& constants, detail::StreamSystem system, int orde
     fill(beam, system.even_source, system.odd_source);
     system.even_source *= beamFactor(m);
     system.odd_source *= beamFactor(m);
+    if (m == 0 && leaves.transmittance > detail::kMostForward) system.odd *= detail::kMostForward;
     system.albedo = m == 0 ? leaves.reflectance + leaves.transmittance : 0.;
     system.lost = (1. - leaves.reflectance) - leaves.transmittance;
-    constants.orders.push_back(detail::streamModes(system));
+    constants.orders.push_back(detail::streamModes(system).value());
     constants.leaves.push_back(streams);
   }
 }
@@ -128,10 +140,14 @@ StreamConstants nStreamConstants(const BeamInMedium& beam, int streams, int azim
   detail::StreamSystem system;
   system.cosines = Eigen::Map<const VectorXd>(gauss.mu.data(), streams);
   system.weights = Eigen::Map<const VectorXd>(gauss.weight.data(), streams);
-  if (std::holds_alternative<LeafScattering>(beam.medium))
-    addLeaves(constants, std::move(system), azimuth_orders);
-  else
-    addParticles(constants, std::move(system), azimuth_orders);
+  if (const auto* particles = std::get_if<Particles>(&constants.beam.medium)) {
+    StreamConstants whole = constants;
+    if (addParticles(whole, system, azimuth_orders, detail::ScaledPhase::delta(*particles, streams))) return whole;
+    if (!addParticles(constants, system, azimuth_orders, detail::ScaledPhase::smoothed(*particles, streams)))
+      throw InvalidInput(std::to_string(streams) + " streams: must be more, for a phase function as sharp as this");
+  } else {
+    addLeaves(constants, system, azimuth_orders);
+  }
   return constants;
 }
 

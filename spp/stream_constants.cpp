@@ -25,7 +25,7 @@ double projectionOf(const Medium& medium, double extinction) {
 StreamConstants uniformHalves(const BeamInMedium& beam, double mean_cosine, double mean_extinction,
                               double forward_share) {
   const double omega = singleScatteringAlbedo(beam.medium), extinct = extinction(beam.medium, beam.mu0);
-  const auto net = [omega](double share) { return std::min(omega * (2. * share - 1.), 1. - 1e-15); };
+  const auto net = [omega](double share) { return std::min(omega * (2. * share - 1.), detail::kMostForward); };
   const auto alone = [](double value) { return Eigen::VectorXd::Constant(1, value); };
   const double met = 0.5 / kPi * extinct;
   StreamConstants constants{.beam = beam,
@@ -35,16 +35,16 @@ StreamConstants uniformHalves(const BeamInMedium& beam, double mean_cosine, doub
                             .projections = {projectionOf(beam.medium, mean_extinction)},
                             .beam_projection = projectionOf(beam.medium, extinct),
                             .uniform_halves = true};
-  constants.orders.push_back(detail::streamModes({.cosines = alone(mean_cosine),
-                                                  .weights = alone(1.),
-                                                  .extinction = alone(mean_extinction),
-                                                  .even = alone(mean_extinction * omega),
-                                                  .odd = alone(mean_extinction * net(forward_share)),
-                                                  .even_source = alone(met * omega),
-                                                  .odd_source = alone(met * net(forwardShare(beam.medium, beam.mu0))),
-                                                  .beam_rate = constants.beam_rate,
-                                                  .albedo = omega,
-                                                  .lost = 1. - omega}));
+  constants.orders.push_back(*detail::streamModes({.cosines = alone(mean_cosine),
+                                                   .weights = alone(1.),
+                                                   .extinction = alone(mean_extinction),
+                                                   .even = alone(mean_extinction * omega),
+                                                   .odd = alone(mean_extinction * net(forward_share)),
+                                                   .even_source = alone(met * omega),
+                                                   .odd_source = alone(met * net(forwardShare(beam.medium, beam.mu0))),
+                                                   .beam_rate = constants.beam_rate,
+                                                   .albedo = omega,
+                                                   .lost = 1. - omega}));
   return constants;
 }
 

@@ -4,8 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "core/require.hpp"
-
 namespace sunfleck::spp::detail {
 namespace {
 
@@ -33,7 +31,7 @@ double slowestRateSquared(const VectorXd& q, const VectorXd& root, const MatrixX
 // With E and O scaled by sqrt W on both sides, C C' = M^-1 (G - O) M^-1 is a Cholesky factor, the modes' k^2 are the
 // eigenvalues of the symmetric C' (G - E) C, and with its vectors V:  X = W^-1/2 C V,  Y = (W^1/2 M)^-1 C'^-1 V, so
 // that X' W M Y = 1.
-StreamModes streamModes(const StreamSystem& system) {
+std::optional<StreamModes> streamModes(const StreamSystem& system) {
   const VectorXd root = system.weights.cwiseSqrt(), inverse_cosines = system.cosines.cwiseInverse();
   const MatrixXd even = root.asDiagonal() * system.even * root.asDiagonal();
   const MatrixXd odd = root.asDiagonal() * system.odd * root.asDiagonal();
@@ -41,10 +39,10 @@ StreamModes streamModes(const StreamSystem& system) {
 
   const Eigen::LLT<MatrixXd> factor(inverse_cosines.asDiagonal() * (extinction - odd) * inverse_cosines.asDiagonal());
   const MatrixXd C = factor.matrixL();
+  if (factor.info() != Eigen::Success) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(C.transpose() * (extinction - even) * C);
   const double most = eigen.eigenvalues().cwiseAbs().maxCoeff();
-  if (factor.info() != Eigen::Success || !(eigen.eigenvalues()[0] >= -1e-10 * most))
-    throw InvalidInput("phase function: must be no sharper than the streams can carry");
+  if (!(eigen.eigenvalues()[0] >= -1e-10 * most)) return std::nullopt;
   const MatrixXd& V = eigen.eigenvectors();
   const MatrixXd CV = C * V, inverse_CV = C.transpose().triangularView<Eigen::Upper>().solve(V);
   VectorXd k = eigen.eigenvalues().cwiseMax(0.).cwiseSqrt();
@@ -55,11 +53,11 @@ StreamModes streamModes(const StreamSystem& system) {
   const VectorXd gain =
       (b + a * system.beam_rate)
           .cwiseQuotient(k.array().max(1e-300).matrix() + VectorXd::Constant(k.size(), system.beam_rate));
-  return {.rate = stored(k),
-          .odd_source = stored(a),
-          .gain = stored(gain),
-          .sum = stored(root.cwiseInverse().asDiagonal() * CV),
-          .difference = stored(root.cwiseProduct(system.cosines).cwiseInverse().asDiagonal() * inverse_CV)};
+  return StreamModes{.rate = stored(k),
+                     .odd_source = stored(a),
+                     .gain = stored(gain),
+                     .sum = stored(root.cwiseInverse().asDiagonal() * CV),
+                     .difference = stored(root.cwiseProduct(system.cosines).cwiseInverse().asDiagonal() * inverse_CV)};
 }
 
 }  // namespace sunfleck::spp::detail

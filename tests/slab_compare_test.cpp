@@ -51,10 +51,10 @@ class SlowlyConverging : public SlabSolution {
 };
 
 template <typename Solution>
-constexpr SlabModel kModelOf{
+const SlabModel kModelOf{
     .name = "test",
     .label = "test",
-    .any_problem = true,
+    .scope = SlabScope::any,
     .gives_radiance = true,
     .solve = [](const SlabSetup& setup) -> std::unique_ptr<SlabSolution> { return std::make_unique<Solution>(setup); }};
 

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "spp/stream_constants.hpp"
 
 namespace sunfleck::spp::detail {
+
+// Light that is scattered straight on more than this share of the time is as good as not scattered; the net flux, which
+// nothing then hinders, would lose its digits.
+inline constexpr double kMostForward = 1. - 1e-8;
 
 // The equations of n streams in each half for one azimuth order, in the sum S and the difference D of the radiances
 // down and up:
@@ -18,8 +23,7 @@ struct StreamSystem {
   double albedo = 0., lost = 1.;  // omega; 1 - omega, whose digits count near 0
 };
 
-// (S9) Their modes. Throws InvalidInput where the scattering is such that the light of some mode would grow without
-// end.
-StreamModes streamModes(const StreamSystem& system);
+// (S9) Their modes; none where E or O scatters more than is met, as a cut series of moments may.
+std::optional<StreamModes> streamModes(const StreamSystem& system);
 
 }  // namespace sunfleck::spp::detail
