@@ -209,7 +209,7 @@ TEST(S13_NStreamConstants, OfMomentsAreThoseOfTheirFunction) {
 
 // Check R + T = 1 where nothing is absorbed, and that all that is lost is what leaves absorb, for every form: the
 // integral over depth of (1 - omega) times leaf irradiance, which for particles counts leaf area, twice the depth.
-TEST(S12_S13_Constants, ConserveEnergyInAnyMedium) {
+TEST(S12_StreamConstants, ConserveEnergyInAnyMedium) {
   using Gauss = boost::math::quadrature::gauss<double, 30>;
   for (const double lost : {0., 0.1}) {
     std::vector<std::pair<std::string, Medium>> media = leaves(0.6 - lost, 0.4);
@@ -245,7 +245,7 @@ TEST(S13_NStreamConstants, ConserveEnergyOfBackwardPeaks) {
 
 // Check media at the edge of what there is: leaves that lie flat or stand upright and turn no light back, a beam that
 // grazes or meets none of them. Where light goes straight on all but for rounding, the net flux is known to 1e-8.
-TEST(S12_S13_Constants, HoldForExtremeLeaves) {
+TEST(S12_StreamConstants, HoldForExtremeLeaves) {
   for (const LeafAngles& angles : {LeafAngles::table({0., 1e-8}, {1., 1.}), LeafAngles::ellipsoidal(1e3),
                                    LeafAngles::table({0.5 * kPi - 1e-8, 0.5 * kPi}, {1., 1.})})
     for (const double transmittance : {0., 1.})
