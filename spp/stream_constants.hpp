@@ -74,7 +74,7 @@ StreamConstants sppConstants(const BeamInMedium& beam);
 // (S12) Two streams, each uniform over its half, and the beam as their source (hemispheric mean).
 StreamConstants twoStreamConstants(const BeamInMedium& beam);
 
-// (S13), (S14) Discrete ordinates.
+// (S13) Discrete ordinates.
 //   streams         n of each half, 1 .. kMostStreams
 //   azimuth_orders  m = 0 .. azimuth_orders - 1 are solved, 1 .. 2 n; fluxes need 1
 StreamConstants nStreamConstants(const BeamInMedium& beam, int streams, int azimuth_orders);
