@@ -87,7 +87,6 @@ void addLeaves(StreamConstants& constants, detail::StreamSystem system, int orde
   LeafProjections beam(leaves.angles, std::span(&constants.beam.mu0, 1));
   constants.beam_projection = beam.projection(0);
   system.beam_rate = constants.beam_rate = beam.projection(0) / constants.beam.mu0;
-  system.extinction.resize(n);
   for (std::size_t i = 0; i < size; ++i) constants.projections.push_back(streams.projection(i));
   system.extinction = Eigen::Map<const VectorXd>(constants.projections.data(), n);
   system.even = system.odd = MatrixXd(n, n);
