@@ -115,7 +115,10 @@ void addSlab(CLI::App& app, RunOptions& run, int& status) {
   for (const SlabModel& model : slabModels())
     names += fmt::format("{}{}: {}", names.empty() ? "" : "; ", model.name, model.label);
   auto* model = options.add("--model", slab->models, "", "Model")->delimiter(',');
-  model->description("One or more, such as pp,spp (default pp). " + names);
+  model->description(
+      "One or more, such as pp,spp (default pp). " + names +
+      "; nstream:N[:ORDERS]: N streams of each half, 1 to 8, and as many azimuth orders, or all (default "
+      "2). Closed forms, from spp to nstream, take one slab of any medium under a beam on black ground");
   auto* streams = options.add(
       "--streams", slab->streams,
       "N, directions of the exact solver over both hemispheres; even, 2 to 256 (default: by --tolerance; of "

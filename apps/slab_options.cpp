@@ -114,7 +114,8 @@ std::vector<const SlabModel*> chosenModels(const SlabOptions& options) {
   std::vector<const SlabModel*> models;
   for (const std::string& name : options.models) {
     const SlabModel* model = findSlabModel(name);
-    if (!model) throw InvalidInput("model = " + name + ": must be one of " + names);
+    if (!model)
+      throw InvalidInput("model = " + name + ": must be one of " + names + ", or nstream:N[:ORDERS], N from 1 to 8");
     if (std::ranges::find(models, model) != models.end())
       throw InvalidInput("model = " + name + ": stands there twice");
     models.push_back(model);
@@ -176,9 +177,11 @@ SlabQuestion slabQuestion(const SlabOptions& options) {
 }
 
 void requireCapable(const SlabModel& model, const SlabQuestion& question) {
-  if (!model.any_problem && !question.setup.homogeneous)
-    throw InvalidInput(
-        fmt::format("model = {}: must be pp for moments, layers, leaves, a ground or a sky", model.name));
+  if (takes(model, question.setup)) return;
+  throw InvalidInput(fmt::format("model = {}: must be pp for {}", model.name,
+                                 model.scope == SlabScope::henyey_greenstein
+                                     ? "moments, layers, leaves, a ground or a sky"
+                                     : "layers, a hot spot, a ground or a sky"));
 }
 
 }  // namespace sunfleck::apps

@@ -22,4 +22,9 @@ double extinction(const Medium& medium, double mu) {
   return leaves ? leafProjection(leaves->angles, std::abs(mu)) : 1.;
 }
 
+double singleScatteringAlbedo(const Medium& medium) {
+  if (const auto* leaves = std::get_if<LeafScattering>(&medium)) return leaves->reflectance + leaves->transmittance;
+  return std::get<Particles>(medium).albedo;
+}
+
 }  // namespace sunfleck

@@ -21,5 +21,7 @@ using Medium = std::variant<Particles, LeafScattering>;
 double scatteredInto(const Medium& medium, double mu, double mu0, double azimuth);
 // Extinction per depth for a direction [1]: 1, or G of leaves.
 double extinction(const Medium& medium, double mu);
+// Share of the light that meets a scatterer and is scattered [1]: omega, of leaves reflectance + transmittance.
+double singleScatteringAlbedo(const Medium& medium);
 
 }  // namespace sunfleck

@@ -4,7 +4,6 @@
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 
@@ -14,7 +13,6 @@ namespace sunfleck {
 namespace {
 
 constexpr double kSphere = 4. * std::numbers::pi;
-constexpr int kNoEnd = std::numeric_limits<int>::max();
 
 double series(const std::vector<double>& moments, double x) {
   double sum = 0., now = 1., before = 0.;
@@ -130,6 +128,11 @@ int PhaseFunction::orders() const {
   if (!cosines_.empty()) return kNoEnd;
   if (!moments_.empty()) return static_cast<int>(moments_.size());
   return asymmetry_ == 0. ? 1 : kNoEnd;
+}
+
+std::optional<double> PhaseFunction::henyeyGreensteinAsymmetry() const {
+  if (moments_.empty()) return asymmetry_;
+  return std::nullopt;
 }
 
 }  // namespace sunfleck

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,8 +32,12 @@ class PhaseFunction {
   // chi_l [1] for l = 0 .. moments.size() - 1
   void moments(std::span<double> moments) const;
 
-  // The first order from which all moments are 0; a large number where that never happens.
+  // The first order from which all moments are 0, or kNoEnd.
   int orders() const;
+  static constexpr int kNoEnd = std::numeric_limits<int>::max();
+
+  // g where chi_l = g^l for all l: made by henyeyGreenstein(), or isotropic.
+  std::optional<double> henyeyGreensteinAsymmetry() const;
 
  private:
   double asymmetry_ = 0.;

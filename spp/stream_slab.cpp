@@ -13,7 +13,6 @@ namespace sunfleck::spp {
 using precise::beamAlongDownward;
 using precise::beamAlongUpward;
 using precise::halfTangent;
-using precise::henyeyGreenstein;
 using precise::modeAlongDownward;
 using precise::modeAlongUpward;
 using precise::modeField;
@@ -35,8 +34,9 @@ template <typename Real>
 StreamSlab<Real>::StreamSlab(StreamConstants constants, Real thickness)
     : constants_(std::move(constants)),
       depth_scale_(static_cast<Real>(constants_.depth_scale)),
-      beam_rate_(static_cast<Real>(1. / constants_.medium.mu0)),
-      mu0_(static_cast<Real>(constants_.medium.mu0)) {
+      beam_rate_(static_cast<Real>(constants_.beam_rate)),
+      mu0_(static_cast<Real>(constants_.beam.mu0)),
+      beam_projection_(static_cast<Real>(constants_.beam_projection)) {
   require(thickness > Real(0), "thickness", thickness, "above 0");
   thickness_ = std::min(thickness * depth_scale_, static_cast<Real>(kInfiniteThickness));
   for (const StreamModes& modes : constants_.orders) addModes(modes);
@@ -44,16 +44,18 @@ StreamSlab<Real>::StreamSlab(StreamConstants constants, Real thickness)
   const StreamModes& mean = constants_.orders.front();
   const std::size_t n = mean.rate.size();
   for (std::size_t j = 0; j < n; ++j) {
-    double power_sum = 0., power_difference = 0., flux_sum = 0., flux_difference = 0.;
+    double power_sum = 0., power_difference = 0., flux_sum = 0., flux_difference = 0., met_sum = 0.;
     for (std::size_t i = 0; i < n; ++i) {
       const double angle = constants_.solid_angles[i], cosine = constants_.cosines[i];
       power_sum += angle * mean.sum[i * n + j];
       power_difference += angle * mean.difference[i * n + j];
+      met_sum += angle * constants_.projections[i] * mean.sum[i * n + j];
       flux_sum += angle * cosine * mean.sum[i * n + j];
       flux_difference += angle * cosine * mean.difference[i * n + j];
     }
     power_sum_.push_back(static_cast<Real>(power_sum));
     power_difference_.push_back(static_cast<Real>(power_difference));
+    met_sum_.push_back(static_cast<Real>(met_sum));
     flux_sum_.push_back(static_cast<Real>(flux_sum));
     flux_difference_.push_back(static_cast<Real>(flux_difference));
   }
@@ -113,11 +115,12 @@ Real StreamSlab<Real>::transmittance() const {
 template <typename Real>
 SlabLight<Real> StreamSlab<Real>::light(Real depth) const {
   const Real z = scaledDepth(depth);
-  Real power_sum(0), power_difference(0), flux_sum(0), flux_difference(0);
+  Real power_sum(0), power_difference(0), flux_sum(0), flux_difference(0), met_sum(0);
   for (std::size_t j = 0; j < power_sum_.size(); ++j) {
     const auto field = modeField(modes_[j], z, thickness_, beam_rate_);
     power_sum += power_sum_[j] * field.sum;
     power_difference += power_difference_[j] * field.difference;
+    met_sum += met_sum_[j] * field.sum;
     flux_sum += flux_sum_[j] * field.sum;
     flux_difference += flux_difference_[j] * field.difference;
   }
@@ -126,27 +129,29 @@ SlabLight<Real> StreamSlab<Real>::light(Real depth) const {
           .power_up = atLeastZero(Real(0.5) * (power_sum - power_difference)),
           .flux_down = mu0_ * direct + atLeastZero(Real(0.5) * (flux_sum + flux_difference)),
           .flux_up = atLeastZero(Real(0.5) * (flux_sum - flux_difference)),
-          .direct = std::exp(-beam_rate_ * (z / depth_scale_))};
+          .direct = std::exp(-beam_rate_ * (z / depth_scale_)),
+          .leaf_irradiance = beam_projection_ * direct + atLeastZero(met_sum)};
 }
 
 template <typename Real>
 typename StreamSlab<Real>::View StreamSlab<Real>::view(double mu, double azimuth) const {
-  const BeamInMedium& medium = constants_.medium;
-  const double cosine = std::max(std::abs(mu), kLeastCosine);
-  const double scattering =
-      mu * medium.mu0 + std::sqrt((1. - mu) * (1. + mu) * (1. - medium.mu0) * (1. + medium.mu0)) * std::cos(azimuth);
-  const double source = medium.albedo * 0.25 / std::numbers::pi * henyeyGreenstein(medium.asymmetry, scattering);
+  const BeamInMedium& beam = constants_.beam;
+  const double cosine = std::clamp(std::abs(mu), kLeastCosine, 1.);
+  const ViewKernel kernel = constants_.viewKernel(cosine);
+  const double per_extinction = kernel.extinction > 0. ? 1. / kernel.extinction : 0.;
+  const double source = per_extinction * scatteredInto(beam.medium, mu, beam.mu0, azimuth);
   View result{.cosine = static_cast<Real>(mu),
-              .rate = static_cast<Real>(1. / (constants_.depth_scale * cosine)),
+              .rate = static_cast<Real>(kernel.extinction / (constants_.depth_scale * cosine)),
               .beam_source = static_cast<Real>(source)};
   for (std::size_t m = 0; m < constants_.orders.size(); ++m) {
     const StreamModes& modes = constants_.orders[m];
-    const std::vector<double> functions = constants_.viewFunctions(static_cast<int>(m), cosine);
     const double wave = std::cos(static_cast<double>(m) * azimuth), side = mu > 0. ? wave : -wave;
     for (std::size_t j = 0, n = modes.rate.size(); j < n; ++j) {
       double sum = 0., difference = 0.;
-      for (std::size_t r = 0; r < functions.size(); ++r)
-        (r % 2 == 0 ? sum : difference) += functions[r] * modes.seen[r * n + j];
+      for (std::size_t i = 0; i < n; ++i) {
+        sum += kernel.sum[m][i] * modes.sum[i * n + j];
+        difference += kernel.difference[m][i] * modes.difference[i * n + j];
+      }
       result.seen_sum.push_back(static_cast<Real>(wave * sum));
       result.seen_difference.push_back(static_cast<Real>(side * difference));
     }

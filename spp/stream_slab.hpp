@@ -14,7 +14,10 @@ template <typename Real>
 struct SlabLight {
   Real power_down, power_up;  // P+, P- [F]
   Real flux_down, flux_up;    // [F]
-  Real direct;                // F e^(-z / mu0) [F]
+  Real direct;                // unscattered, F e^(-K z) [F]
+  // Of both sides of a leaf together, per one-sided leaf area, direct light included: the mean over the leaves. In a
+  // medium of particles, that of leaves of all directions alike. Times (1 - omega) it is what a leaf absorbs.
+  Real leaf_irradiance;
 };
 
 // A closed form (SPP, two-stream, n-stream) in a homogeneous slab on a black ground; Real is float or double. Depths
@@ -34,8 +37,8 @@ class StreamSlab {
   // Direction in which light travels: mu > 0 down, azimuth from that of the beam [rad]. Made once for many depths.
   struct View {
     Real cosine = 1;
-    Real rate = 1;                                // 1 / (depth scale |mu|)
-    Real beam_source = 0;                         // omega p(s, s0) [1/sr]
+    Real rate = 1;                                // G(mu) / (depth scale |mu|)
+    Real beam_source = 0;                         // omega p(s, s0), of leaves Gamma(s, s0) / G(mu) [1/sr]
     std::vector<Real> seen_sum, seen_difference;  // alpha, beta of every mode of every order, cos(m phi) included
   };
   View view(double mu, double azimuth) const;  // mu [-1, 1], not 0
@@ -56,9 +59,9 @@ class StreamSlab {
 
   StreamConstants constants_;
   Real thickness_;  // scaled
-  Real depth_scale_, beam_rate_, mu0_;
-  std::vector<Mode> modes_;                                                      // of order 0, then of order 1 ...
-  std::vector<Real> power_sum_, power_difference_, flux_sum_, flux_difference_;  // of the modes of order 0
+  Real depth_scale_, beam_rate_, mu0_, beam_projection_;
+  std::vector<Mode> modes_;  // of order 0, then of order 1 ...
+  std::vector<Real> power_sum_, power_difference_, flux_sum_, flux_difference_, met_sum_;  // of the modes of order 0
 };
 
 extern template class StreamSlab<float>;

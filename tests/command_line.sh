@@ -149,6 +149,9 @@ for option in --residual --no-delta-m --no-corrections "--streams 8" "--toleranc
 done
 refuses "must be pp" slab --model spp --sky 1
 refuses "must be pp" slab --model pp,spp --ground-albedo 0.5
+refuses "must be pp for layers, a hot spot" slab --model best --leaves spherical --hot-spot 0.1
+refuses "model = mc: must be pp" slab --model mc --leaves spherical
+for name in nstream:0 nstream:9 nstream:2:5 nstream:2:0 nstream: nstream:2:; do refuses "model = $name" slab --model $name; done
 for leaves in none spherical:2 ellipsoidal ellipsoidal:0 ellipsoidal:x beta:57 beta:90,20 beta:57,0 beta:57,20,3 ""; do
   refuses "lea" slab --leaves "$leaves"
 done
@@ -263,6 +266,10 @@ does '"radiance": []' slab --json
 does "residual" slab --residual
 does "is within" slab --tolerance 1e-2
 does "reflectance" slab --moments moments.txt --no-delta-m --no-corrections
+for model in spp sppr twostream nstream best nstream:3:all nstream:1; do
+  does "mean intensity" slab --model $model --moments moments.txt --depths 1
+  does "mean intensity" slab --model $model --leaves planophile --thickness 3 --depths 1
+done
 does "reflectance" slab --layers layers.csv --ground-albedo 0.5
 does "reflectance" slab --leaves ellipsoidal:1.5 --reflectance 0.4 --transmittance 0.4 --hot-spot 0.1 --thickness 3
 does "reflectance" slab --leaves beta:57,20 --thickness 3

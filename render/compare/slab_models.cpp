@@ -1,8 +1,10 @@
 #include "render/compare/slab_models.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <numbers>
+#include <vector>
 
 #include "render/reference/slab_trace.hpp"
 #include "spp/forward_share.hpp"
@@ -36,58 +38,72 @@ class ExactSlab : public SlabSolution {
   int modes_ = 1;  // azimuth modes that have been used
 };
 
-// SPP as it is printed, without the refinement: radiance is the same for all directions of a half.
+// What isSlabUnderBeam() tells.
+spp::BeamInMedium beamOf(const SlabSetup& setup) {
+  return {setup.problem.layers.front().medium, setup.problem.beam->mu0};
+}
+double thicknessOf(const SlabSetup& setup) {
+  return setup.problem.layers.front().thickness;
+}
+
+// SPP as it is printed, without the refinement: radiance is the same for all directions of a half. Depth is scaled by
+// the beam's extinction, which all light has in it.
 class SimplifiedSlab : public SlabSolution {
  public:
-  explicit SimplifiedSlab(const SlabSetup& setup)
-      : slab_(*setup.homogeneous), forward_share_(spp::forwardShare(slab_.asymmetry, slab_.mu0)) {}
+  explicit SimplifiedSlab(const SlabSetup& setup) : mu0_(setup.problem.beam->mu0), thickness_(thicknessOf(setup)) {
+    const Medium& medium = setup.problem.layers.front().medium;
+    extinction_ = extinction(medium, mu0_);
+    albedo_ = singleScatteringAlbedo(medium);
+    forward_share_ = spp::forwardShare(medium, mu0_);
+  }
   // Powers are relative to F = P+(0), and fluxes are mu0 times powers: the factor cancels in shares.
   SlabBudget budget() const override {
-    const double reflectance = at(0.).up, transmittance = at(slab_.thickness).down;
-    return {reflectance, transmittance, spp::precise::directPower(slab_.thickness, slab_.mu0),
-            std::max(0., 1. - reflectance - transmittance)};
+    const double reflectance = at(0.).up, transmittance = at(thickness_).down;
+    return {reflectance, transmittance, directAt(thickness_), std::max(0., 1. - reflectance - transmittance)};
   }
-  double incident() const override { return slab_.mu0; }
+  double incident() const override { return mu0_; }
   pp::Fluxes fluxes(double depth) const override {
     const auto powers = at(depth);
-    const double direct = spp::precise::directPower(depth, slab_.mu0);
-    return {.up = slab_.mu0 * powers.up,
-            .down = slab_.mu0 * std::max(0., powers.down - direct),
-            .direct = slab_.mu0 * direct,
+    const double direct = directAt(depth);
+    return {.up = mu0_ * powers.up,
+            .down = mu0_ * std::max(0., powers.down - direct),
+            .direct = mu0_ * direct,
             .mean_intensity = (powers.down + powers.up) / (4. * std::numbers::pi)};
   }
   void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
                  std::span<double> result) override {
     auto out = result.begin();
     for (const double depth : depths) {
-      const auto radiance = spp::precise::sppDiffuseRadiance(at(depth), spp::precise::directPower(depth, slab_.mu0));
+      const auto radiance = spp::precise::sppDiffuseRadiance(at(depth), directAt(depth));
       for (const double mu : mus) out = std::fill_n(out, phis.size(), mu > 0. ? radiance.down : radiance.up);
     }
   }
   int streams() const override { return 2; }
 
  private:
+  double directAt(double depth) const { return spp::precise::directPower(extinction_ * depth, mu0_); }
   spp::precise::SlabPowers at(double depth) const {
-    return spp::precise::sppPowers(depth, slab_.thickness, slab_.mu0, slab_.albedo, forward_share_);
+    return spp::precise::sppPowers(extinction_ * depth, extinction_ * thickness_, mu0_, albedo_, forward_share_);
   }
-  pp::SlabCase slab_;
-  double forward_share_;
+  double mu0_, thickness_, extinction_, albedo_, forward_share_;
 };
 
 // The closed forms made of modes, their radiance refined by one integral along the line of sight.
 class RefinedSlab : public SlabSolution {
  public:
   RefinedSlab(const SlabSetup& setup, spp::StreamConstants constants)
-      : case_(*setup.homogeneous), streams_(2 * constants.streams()), slab_(std::move(constants), case_.thickness) {}
+      : mu0_(setup.problem.beam->mu0),
+        thickness_(thicknessOf(setup)),
+        streams_(2 * constants.streams()),
+        slab_(std::move(constants), thickness_) {}
   SlabBudget budget() const override {
     const double reflectance = slab_.reflectance(), transmittance = slab_.transmittance();
-    return {reflectance, transmittance, spp::precise::directPower(case_.thickness, case_.mu0),
-            std::max(0., 1. - reflectance - transmittance)};
+    return {reflectance, transmittance, slab_.light(thickness_).direct, std::max(0., 1. - reflectance - transmittance)};
   }
-  double incident() const override { return case_.mu0; }
+  double incident() const override { return mu0_; }
   pp::Fluxes fluxes(double depth) const override {
     const auto light = slab_.light(depth);
-    const double direct = case_.mu0 * light.direct;
+    const double direct = mu0_ * light.direct;
     return {.up = light.flux_up,
             .down = std::max(0., light.flux_down - direct),
             .direct = direct,
@@ -105,7 +121,7 @@ class RefinedSlab : public SlabSolution {
   int streams() const override { return streams_; }
 
  private:
-  pp::SlabCase case_;
+  double mu0_, thickness_;
   int streams_;
   spp::StreamSlab<double> slab_;
 };
@@ -150,23 +166,16 @@ class SampledSlab : public SlabSolution {
   SlabTraceResult total_;
 };
 
-spp::BeamInMedium mediumOf(const SlabSetup& setup) {
-  return {
-      .asymmetry = setup.homogeneous->asymmetry, .albedo = setup.homogeneous->albedo, .mu0 = setup.homogeneous->mu0};
-}
 std::unique_ptr<SlabSolution> refinedSpp(const SlabSetup& setup) {
-  return std::make_unique<RefinedSlab>(setup, spp::sppConstants(mediumOf(setup)));
+  return std::make_unique<RefinedSlab>(setup, spp::sppConstants(beamOf(setup)));
 }
 std::unique_ptr<SlabSolution> twoStream(const SlabSetup& setup) {
-  return std::make_unique<RefinedSlab>(setup, spp::twoStreamConstants(mediumOf(setup)));
+  return std::make_unique<RefinedSlab>(setup, spp::twoStreamConstants(beamOf(setup)));
 }
-// Two streams of each half and two orders of the azimuth: what a shader can afford.
-std::unique_ptr<SlabSolution> nStream(const SlabSetup& setup) {
-  return std::make_unique<RefinedSlab>(setup, spp::nStreamConstants(mediumOf(setup), 2, 2));
-}
-// The closest that the closed forms come at a bearable price: four streams of each half and all orders.
-std::unique_ptr<SlabSolution> fourStreams(const SlabSetup& setup) {
-  return std::make_unique<RefinedSlab>(setup, spp::nStreamConstants(mediumOf(setup), 4, 8));
+auto nStream(int streams, int azimuth_orders) {
+  return [streams, azimuth_orders](const SlabSetup& setup) -> std::unique_ptr<SlabSolution> {
+    return std::make_unique<RefinedSlab>(setup, spp::nStreamConstants(beamOf(setup), streams, azimuth_orders));
+  };
 }
 
 template <typename Solution>
@@ -174,31 +183,60 @@ std::unique_ptr<SlabSolution> solved(const SlabSetup& setup) {
   return std::make_unique<Solution>(setup);
 }
 
-constexpr SlabModel closedForm(std::string_view name, std::string_view label,
-                               std::unique_ptr<SlabSolution> (*solve)(const SlabSetup&)) {
-  return {
-      .name = name, .label = label, .any_problem = false, .gives_radiance = true, .is_sample = false, .solve = solve};
+template <typename Solve>
+SlabModel closedForm(std::string name, std::string label, Solve solve) {
+  return {.name = std::move(name),
+          .label = std::move(label),
+          .scope = SlabScope::slab_under_beam,
+          .gives_radiance = true,
+          .is_sample = false,
+          .solve = std::move(solve)};
 }
 
-constexpr std::array kModels{
-    SlabModel{.name = "pp",
-              .label = "exact",
-              .any_problem = true,
-              .gives_radiance = true,
-              .is_sample = false,
-              .solve = solved<ExactSlab>},
-    closedForm("spp", "simplified plane-parallel, unrefined", solved<SimplifiedSlab>),
-    closedForm("sppr", "simplified plane-parallel, refined", refinedSpp),
-    closedForm("twostream", "hemispheric two-stream, refined", twoStream),
-    closedForm("nstream", "two streams and azimuth orders, refined", nStream),
-    closedForm("best", "four streams, all azimuth orders, refined", fourStreams),
-    SlabModel{.name = "mc",
-              .label = "Monte Carlo",
-              .any_problem = false,
-              .gives_radiance = true,
-              .is_sample = true,
-              .solve = solved<SampledSlab>},
-};
+const std::vector<SlabModel>& models() {
+  static const std::vector<SlabModel> all{
+      {.name = "pp",
+       .label = "exact",
+       .scope = SlabScope::any,
+       .gives_radiance = true,
+       .is_sample = false,
+       .solve = solved<ExactSlab>},
+      closedForm("spp", "simplified plane-parallel, unrefined", solved<SimplifiedSlab>),
+      closedForm("sppr", "simplified plane-parallel, refined", refinedSpp),
+      closedForm("twostream", "hemispheric two-stream, refined", twoStream),
+      // what a shader can afford
+      closedForm("nstream", "two streams and azimuth orders, refined", nStream(2, 2)),
+      // the closest that the closed forms come at a bearable price
+      closedForm("best", "four streams, all azimuth orders, refined", nStream(4, 8)),
+      {.name = "mc",
+       .label = "Monte Carlo",
+       .scope = SlabScope::henyey_greenstein,
+       .gives_radiance = true,
+       .is_sample = true,
+       .solve = solved<SampledSlab>},
+  };
+  return all;
+}
+
+// nstream:N and nstream:N:ORDERS.
+const std::vector<SlabModel>& streamModels() {
+  static const std::vector<SlabModel> all = [] {
+    constexpr int kMostStreams = 8;
+    std::vector<SlabModel> list;
+    for (int n = 1; n <= kMostStreams; ++n) {
+      const auto add = [&](const std::string& suffix, int orders) {
+        list.push_back(closedForm(fmt::format("nstream:{}{}", n, suffix),
+                                  fmt::format("{} streams, {} azimuth orders, refined", n, orders),
+                                  nStream(n, orders)));
+      };
+      add("", 2);
+      add(":all", 2 * n);
+      for (int orders = 1; orders <= 2 * n; ++orders) add(fmt::format(":{}", orders), orders);
+    }
+    return list;
+  }();
+  return all;
+}
 
 }  // namespace
 
@@ -210,17 +248,38 @@ SlabSetup homogeneousSlab(const pp::SlabCase& slab, const pp::Settings& settings
           .homogeneous = slab};
 }
 
+bool isSlabUnderBeam(const pp::Problem& problem) {
+  const auto dark = [](const pp::Sky& sky) {
+    const double* radiance = std::get_if<double>(&sky);
+    return radiance && *radiance == 0.;
+  };
+  if (problem.layers.size() != 1 || !problem.beam || !dark(problem.above) || !dark(problem.below)) return false;
+  const pp::Layer& layer = problem.layers.front();
+  const auto* leaves = std::get_if<LeafScattering>(&layer.medium);
+  return layer.emission_top == 0. && layer.emission_bottom == 0. && problem.beam->irradiance == 1. &&
+         problem.beam->azimuth == 0. && problem.ground.albedo == 0. && !problem.ground.brdf &&
+         problem.ground.emission == 0. && !(leaves && leaves->hot_spot > 0.);
+}
+
+bool takes(const SlabModel& model, const SlabSetup& setup) {
+  if (model.scope == SlabScope::any) return true;
+  return model.scope == SlabScope::henyey_greenstein ? setup.homogeneous.has_value() : isSlabUnderBeam(setup.problem);
+}
+
 std::span<const SlabModel> slabModels() {
-  return kModels;
+  return models();
 }
 
 const SlabModel& exactSlabModel() {
-  return kModels.front();
+  return models().front();
 }
 
 const SlabModel* findSlabModel(std::string_view name) {
-  const auto found = std::ranges::find(kModels, name, &SlabModel::name);
-  return found == kModels.end() ? nullptr : &*found;
+  for (const std::vector<SlabModel>* list : {&models(), &streamModels()}) {
+    const auto found = std::ranges::find(*list, name, &SlabModel::name);
+    if (found != list->end()) return &*found;
+  }
+  return nullptr;
 }
 
 }  // namespace sunfleck

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "pp_solver/problem.hpp"
@@ -12,8 +14,7 @@
 
 namespace sunfleck {
 
-// What a model of a slab is asked. The exact solver takes any problem; closed forms take only those that `homogeneous`
-// can tell.
+// What a model of a slab is asked.
 struct SlabSetup {
   pp::Problem problem;
   pp::Settings settings;                    // of the exact solver
@@ -45,19 +46,33 @@ class SlabSolution {
   virtual std::optional<double> residual() { return std::nullopt; }
 };
 
+// The problems that a model takes.
+enum class SlabScope {
+  any,               // layers, ground, sky
+  slab_under_beam,   // isSlabUnderBeam()
+  henyey_greenstein  // SlabSetup::homogeneous
+};
+
 // A model as the command line and the comparisons know it. A new one is a new line of slabModels().
 struct SlabModel {
-  std::string_view name;   // as typed
-  std::string_view label;  // for people
-  bool any_problem;        // layers, leaves, ground, sky; else only SlabSetup::homogeneous
-  bool gives_radiance;     // else fluxes alone
-  bool is_sample;          // Monte Carlo: answers have standard errors, and mean intensity is not among them
-  std::unique_ptr<SlabSolution> (*solve)(const SlabSetup& setup);
+  std::string name;   // as typed
+  std::string label;  // for people
+  SlabScope scope;
+  bool gives_radiance;  // else fluxes alone
+  bool is_sample;       // Monte Carlo: answers have standard errors, and mean intensity is not among them
+  std::function<std::unique_ptr<SlabSolution>(const SlabSetup& setup)> solve;
 };
+
+// Whether the problem is one homogeneous layer of any medium, without a hot spot, on black ground under a beam of
+// irradiance 1 and azimuth 0.
+bool isSlabUnderBeam(const pp::Problem& problem);
+bool takes(const SlabModel& model, const SlabSetup& setup);
 
 // The exact solver first.
 std::span<const SlabModel> slabModels();
 const SlabModel& exactSlabModel();
-const SlabModel* findSlabModel(std::string_view name);  // nullptr: there is none
+// One of slabModels(), or nstream:N and nstream:N:ORDERS: N = 1 .. 8 streams of each half and 1 .. 2 N azimuth orders,
+// or all (else 2). nullptr: there is none of this name.
+const SlabModel* findSlabModel(std::string_view name);
 
 }  // namespace sunfleck
