@@ -119,7 +119,8 @@ SHARED_FN Number beamAlongDownward(SHARED_IN(SlabPlace) at, Number view_rate, Nu
   return view_rate * rateQuotient(at.beam_rate, view_rate, at.depth, at.direct, view_fade);
 }
 SHARED_FN Number beamAlongUpward(SHARED_IN(SlabPlace) at, Number view_rate, Number view_fade) {
-  return (view_rate / (view_rate + at.beam_rate)) * (at.direct - view_fade * at.direct_through);
+  return view_rate * rateQuotient(Number(0.0f), view_rate + at.beam_rate, at.rest, at.direct,
+                                  view_fade * at.direct_through);
 }
 
 // (S10) The same means of u and v of one mode; `beam` is that of the direct light.
@@ -127,7 +128,8 @@ SHARED_FN ModeField modeAlongDownward(StreamMode mode, ModeShare share, SHARED_I
                                       SHARED_IN(SlabPlace) at, Number view_rate, Number view_fade, Number beam) {
   Number k = mode.rate;
   Number even = shapes.scale * (rateQuotient(k, view_rate, at.depth, shapes.fade, view_fade) +
-                                (shapes.mirrored_fade - view_fade * shapes.fade_through) * (Number(1.0f) / (view_rate + k)));
+                                rateQuotient(Number(0.0f), view_rate + k, at.depth, shapes.mirrored_fade,
+                                             view_fade * shapes.fade_through));
   Number odd = shapes.odd + shapes.half_tangent * view_fade - even;
   even *= view_rate;
   Number gained = mode.gain * view_rate *
@@ -141,12 +143,13 @@ SHARED_FN ModeField modeAlongDownward(StreamMode mode, ModeShare share, SHARED_I
 SHARED_FN ModeField modeAlongUpward(StreamMode mode, ModeShare share, SHARED_IN(ModeShapes) shapes,
                                     SHARED_IN(SlabPlace) at, Number view_rate, Number view_fade, Number beam) {
   Number k = mode.rate;
-  Number inverse = Number(1.0f) / (view_rate + k);
   Number even = shapes.scale * (rateQuotient(k, view_rate, at.rest, shapes.mirrored_fade, view_fade) +
-                                (shapes.fade - view_fade * shapes.fade_through) * inverse);
+                                rateQuotient(Number(0.0f), view_rate + k, at.rest, shapes.fade,
+                                             view_fade * shapes.fade_through));
   Number odd = shapes.odd - shapes.half_tangent * view_fade + even;
   even *= view_rate;
-  Number gained = mode.gain * (view_rate * (shapes.gained - view_fade * shapes.gained_through) + beam) * inverse;
+  Number gained = mode.gain * (view_rate * (shapes.gained - view_fade * shapes.gained_through) + beam) *
+                  (Number(1.0f) / (view_rate + k));
   ModeField mean;
   mean.sum = gained + share.even * even + share.odd * odd;
   mean.difference =

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/require.hpp"
-#include "spp/detail/mode_constants.hpp"
+#include "spp/mode_numbers.hpp"
 
 namespace sunfleck::spp {
 
@@ -35,7 +35,7 @@ StreamSlab<Real>::StreamSlab(StreamConstants constants, Real thickness)
       mu0_(static_cast<Real>(constants_.medium.mu0)) {
   require(thickness > Real(0), "thickness", thickness, "above 0");
   for (const StreamModes& modes : constants_.orders) addModes(modes);
-  const detail::PowerWeights weights = detail::powerWeights(constants_);
+  const PowerWeights weights = powerWeights(constants_);
   power_sum_ = numbers<Real>(weights.power_sum);
   power_difference_ = numbers<Real>(weights.power_difference);
   flux_sum_ = numbers<Real>(weights.flux_sum);
@@ -50,7 +50,7 @@ void StreamSlab<Real>::addModes(const StreamModes& modes) {
   using Vector = Eigen::VectorXd;
   using Precise = StreamFormulas<double>;
   const Index n = static_cast<Index>(modes.rate.size());
-  const detail::ModeCouplings couplings = detail::modeCouplings(constants_, modes);
+  const ModeCouplings couplings = modeCouplings(constants_, modes);
   const Matrix S = Eigen::Map<const Matrix>(couplings.sum_of_difference.data(), n, n);
   const Matrix R = Eigen::Map<const Matrix>(couplings.difference_of_sum.data(), n, n);
   const double thickness = static_cast<double>(thickness_);

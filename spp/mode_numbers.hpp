@@ -4,8 +4,8 @@
 
 #include "spp/stream_constants.hpp"
 
-// What of StreamConstants a slab's formulas ask for (stream_formulas.glsl), n modes.
-namespace sunfleck::spp::detail {
+// What a slab's formulas (stream_formulas.glsl) ask of StreamConstants, n modes of each order.
+namespace sunfleck::spp {
 
 // (S9) X^-1 Y and Y^-1 X of one order, n x n, row after row. Both are symmetric and positive definite.
 struct ModeCouplings {
@@ -19,4 +19,9 @@ struct PowerWeights {
 };
 PowerWeights powerWeights(const StreamConstants& constants);
 
-}  // namespace sunfleck::spp::detail
+// StreamModes of stream_formulas.glsl for each order, member after member, as a shader's buffer (std430) holds them
+// too.
+template <typename Real>
+std::vector<Real> modeNumbers(const StreamConstants& constants);
+
+}  // namespace sunfleck::spp

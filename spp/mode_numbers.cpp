@@ -1,8 +1,8 @@
-#include "spp/detail/mode_constants.hpp"
+#include "spp/mode_numbers.hpp"
 
 #include <cstddef>
 
-namespace sunfleck::spp::detail {
+namespace sunfleck::spp {
 
 // The modes are orthogonal: with M the streams' solid angles times cosines, X' M Y = N is diagonal. So X^-1 = N^-1 Y'
 // M, and nothing need be inverted.
@@ -47,4 +47,20 @@ PowerWeights powerWeights(const StreamConstants& constants) {
   return result;
 }
 
-}  // namespace sunfleck::spp::detail
+template <typename Real>
+std::vector<Real> modeNumbers(const StreamConstants& constants) {
+  std::vector<Real> result;
+  const auto append = [&](double value) { result.push_back(static_cast<Real>(value)); };
+  for (const StreamModes& modes : constants.orders) {
+    for (std::size_t j = 0; j < modes.rate.size(); ++j)
+      for (const double value : {modes.rate[j], modes.odd_source[j], modes.gain[j]}) append(value);
+    const ModeCouplings couplings = modeCouplings(constants, modes);
+    for (const double value : couplings.sum_of_difference) append(value);
+    for (const double value : couplings.difference_of_sum) append(value);
+  }
+  return result;
+}
+template std::vector<float> modeNumbers(const StreamConstants&);
+template std::vector<double> modeNumbers(const StreamConstants&);
+
+}  // namespace sunfleck::spp
