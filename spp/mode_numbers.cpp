@@ -53,7 +53,7 @@ std::vector<Real> modeNumbers(const StreamConstants& constants) {
   const auto append = [&](double value) { result.push_back(static_cast<Real>(value)); };
   for (const StreamModes& modes : constants.orders) {
     for (std::size_t j = 0; j < modes.rate.size(); ++j)
-      for (const double value : {modes.rate[j], modes.odd_source[j], modes.gain[j]}) append(value);
+      for (const double value : {modes.rate[j], modes.gain[j], modes.odd_source[j] - modes.gain[j]}) append(value);
     const ModeCouplings couplings = modeCouplings(constants, modes);
     for (const double value : couplings.sum_of_difference) append(value);
     for (const double value : couplings.difference_of_sum) append(value);

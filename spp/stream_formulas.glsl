@@ -19,9 +19,9 @@ struct SlabPlace {
 };
 
 struct StreamMode {
-  Number rate;        // k: rate at which the mode decays                                [1], >= 0
-  Number odd_source;  // a
-  Number gain;        // g = (b + a K) / (K + k): the beam's part of u is g D(k, K, z)
+  Number rate;      // k: rate at which the mode decays                                [1], >= 0
+  Number gain;      // g = (b + a K) / (K + k): the beam's part of u is g D(k, K, z)
+  Number entering;  // a - g: the beam's part of v at the lit face; where it is small, not the difference of two floats
 };
 
 // What a mode is at a place, for a slab of its thickness.
@@ -82,7 +82,7 @@ SHARED_FN ModeField modeField(StreamMode mode, ModeShare share, SHARED_IN(ModeSh
   Number gained = mode.gain * shapes.gained;
   ModeField field;
   field.sum = gained + share.even * shapes.even + share.odd * shapes.odd;
-  field.difference = (mode.odd_source - mode.gain) * at.direct + mode.rate * gained -
+  field.difference = mode.entering * at.direct + mode.rate * gained -
                      share.even * (mode.rate * (mode.rate * shapes.odd)) - share.odd * shapes.even;
   return field;
 }
@@ -137,7 +137,7 @@ SHARED_FN ModeField modeAlongDownward(StreamMode mode, ModeShare share, SHARED_I
   ModeField mean;
   mean.sum = gained + share.even * even + share.odd * odd;
   mean.difference =
-      (mode.odd_source - mode.gain) * beam + k * gained - share.even * (k * (k * odd)) - share.odd * even;
+      mode.entering * beam + k * gained - share.even * (k * (k * odd)) - share.odd * even;
   return mean;
 }
 SHARED_FN ModeField modeAlongUpward(StreamMode mode, ModeShare share, SHARED_IN(ModeShapes) shapes,
@@ -153,7 +153,7 @@ SHARED_FN ModeField modeAlongUpward(StreamMode mode, ModeShare share, SHARED_IN(
   ModeField mean;
   mean.sum = gained + share.even * even + share.odd * odd;
   mean.difference =
-      (mode.odd_source - mode.gain) * beam + k * gained - share.even * (k * (k * odd)) - share.odd * even;
+      mode.entering * beam + k * gained - share.even * (k * (k * odd)) - share.odd * even;
   return mean;
 }
 
@@ -211,9 +211,8 @@ SHARED_FN SlabModes slabModes(SHARED_IN(StreamModes) modes, SHARED_IN(SlabPlace)
     tangent.of[j] = slab.shapes[j].half_tangent;
     squared_tangent.of[j] = mode.rate * (mode.rate * tangent.of[j]);
     gained.of[j] = mode.gain * slab.shapes[j].gained_through;
-    Number entering = mode.odd_source - mode.gain;
-    even_source.of[j] = entering * (Number(1.0f) - at.direct_through) - mode.rate * gained.of[j];
-    odd_source.of[j] = entering * (Number(1.0f) + at.direct_through) + mode.rate * gained.of[j];
+    even_source.of[j] = mode.entering * (Number(1.0f) - at.direct_through) - mode.rate * gained.of[j];
+    odd_source.of[j] = mode.entering * (Number(1.0f) + at.direct_through) + mode.rate * gained.of[j];
   }
   ModeNumbers even, odd;
   for (int i = 0; i < STREAMS; ++i) {

@@ -72,8 +72,8 @@ void StreamSlab<Real>::addModes(const StreamModes& modes) {
   for (Index j = 0; j < n; ++j) {
     const std::size_t at = static_cast<std::size_t>(j);
     modes_.push_back({.mode = {.rate = static_cast<Real>(modes.rate[at]),
-                               .odd_source = static_cast<Real>(modes.odd_source[at]),
-                               .gain = static_cast<Real>(modes.gain[at])},
+                               .gain = static_cast<Real>(modes.gain[at]),
+                               .entering = static_cast<Real>(modes.odd_source[at] - modes.gain[at])},
                       .share = {.even = static_cast<Real>(-0.5 * even[j]), .odd = static_cast<Real>(0.5 * odd[j])}});
   }
 }
