@@ -63,14 +63,19 @@ inline constexpr int kSeriesDegree = 13;
 #undef SHARED_FN
 #undef SHARED_IN
 
-// All formulas for one kind of number (float, double, lanes of float) and STREAMS streams in each half.
+// The precision of a kind of number that is made of others, such as the lanes of a vector.
+template <typename Number>
+struct PrecisionOf {
+  using Real = Number;
+};
+
+// All formulas for one kind of number and STREAMS streams in each half.
 template <typename Number, int STREAMS = 1>
 struct StreamFormulas {
 #define SHARED_FN static inline
 #define SHARED_IN(Type) const Type&
-  static constexpr int kSeriesDegree = std::is_same_v<Number, double> ? 13 : 7;
-  static constexpr auto kDecaySeries =
-      detail::decaySeries<std::conditional_t<std::is_same_v<Number, double>, double, float>, kSeriesDegree>();
+  static constexpr int kSeriesDegree = std::is_same_v<typename PrecisionOf<Number>::Real, float> ? 7 : 13;
+  static constexpr auto kDecaySeries = detail::decaySeries<typename PrecisionOf<Number>::Real, kSeriesDegree>();
 #include "spp/spp_formulas.glsl"
 #include "spp/stream_formulas.glsl"
 #undef SHARED_FN

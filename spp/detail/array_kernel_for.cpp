@@ -1,7 +1,6 @@
 // Compiled once for each instruction set (sunfleck_kernel in cmake/module.cmake).
 #include "spp/detail/array_kernel.hpp"
 #include "spp/detail/lanes.hpp"
-#include "spp/slab.hpp"
 
 namespace sunfleck::spp::SUNFLECK_ISA {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "spp/slab.hpp"
+
 // Numbers of single precision in the lanes of one vector, which the shared formulas take for a Number. Compiled once
 // for each instruction set, in a namespace of its own; holds no code that others share.
 namespace sunfleck::spp::SUNFLECK_ISA {
@@ -72,3 +74,8 @@ inline Lanes exp(Lanes x) {
 }
 
 }  // namespace sunfleck::spp::SUNFLECK_ISA
+
+template <>
+struct sunfleck::spp::PrecisionOf<sunfleck::spp::SUNFLECK_ISA::Lanes> {
+  using Real = float;
+};
