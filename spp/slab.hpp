@@ -72,7 +72,11 @@ struct PrecisionOf {
 // All formulas for one kind of number and STREAMS streams in each half.
 template <typename Number, int STREAMS = 1>
 struct StreamFormulas {
-#define SHARED_FN static inline
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SHARED_FN static inline  // all in one, with the sanitizers' checks between, would compile for minutes
+#else
+#define SHARED_FN [[gnu::always_inline]] static inline
+#endif
 #define SHARED_IN(Type) const Type&
   static constexpr int kSeriesDegree = std::is_same_v<typename PrecisionOf<Number>::Real, float> ? 7 : 13;
   static constexpr auto kDecaySeries = detail::decaySeries<typename PrecisionOf<Number>::Real, kSeriesDegree>();

@@ -178,16 +178,21 @@ struct StreamModes {
 // Solves (1 + M diag t) x = right, t >= 0. With M positive definite no pivot is below 1, and what stays of M symmetric.
 SHARED_FN ModeNumbers solvedModes(ModeMatrix M, SHARED_IN(ModeNumbers) t, ModeNumbers right) {
   ModeNumbers inverse_pivot;
+#pragma GCC unroll 8
   for (int j = 0; j < STREAMS; ++j) {
     inverse_pivot.of[j] = Number(1.0f) / (Number(1.0f) + M.of[j * STREAMS + j] * t.of[j]);
     Number weight = t.of[j] * inverse_pivot.of[j];
+#pragma GCC unroll 8
     for (int i = j + 1; i < STREAMS; ++i) {
       Number factor = weight * M.of[j * STREAMS + i];
       right.of[i] -= factor * right.of[j];
+#pragma GCC unroll 8
       for (int l = i; l < STREAMS; ++l) M.of[i * STREAMS + l] -= factor * M.of[j * STREAMS + l];
     }
   }
+#pragma GCC unroll 8
   for (int j = STREAMS - 1; j >= 0; --j) {
+#pragma GCC unroll 8
     for (int i = j + 1; i < STREAMS; ++i) right.of[j] -= M.of[j * STREAMS + i] * (t.of[i] * right.of[i]);
     right.of[j] *= inverse_pivot.of[j];
   }
@@ -205,6 +210,7 @@ struct SlabModes {
 SHARED_FN SlabModes slabModes(SHARED_IN(StreamModes) modes, SHARED_IN(SlabPlace) at) {
   SlabModes slab;
   ModeNumbers tangent, squared_tangent, gained, even_source, odd_source;
+#pragma GCC unroll 8
   for (int j = 0; j < STREAMS; ++j) {
     StreamMode mode = modes.mode[j];
     slab.shapes[j] = modeShapes(mode.rate, at);
@@ -215,9 +221,11 @@ SHARED_FN SlabModes slabModes(SHARED_IN(StreamModes) modes, SHARED_IN(SlabPlace)
     odd_source.of[j] = mode.entering * (Number(1.0f) + at.direct_through) + mode.rate * gained.of[j];
   }
   ModeNumbers even, odd;
+#pragma GCC unroll 8
   for (int i = 0; i < STREAMS; ++i) {
     even.of[i] = gained.of[i];
     odd.of[i] = odd_source.of[i];
+#pragma GCC unroll 8
     for (int j = 0; j < STREAMS; ++j) {
       even.of[i] += modes.sum_of_difference.of[i * STREAMS + j] * even_source.of[j];
       odd.of[i] -= modes.difference_of_sum.of[i * STREAMS + j] * gained.of[j];
@@ -225,6 +233,7 @@ SHARED_FN SlabModes slabModes(SHARED_IN(StreamModes) modes, SHARED_IN(SlabPlace)
   }
   even = solvedModes(modes.sum_of_difference, squared_tangent, even);
   odd = solvedModes(modes.difference_of_sum, tangent, odd);
+#pragma GCC unroll 8
   for (int j = 0; j < STREAMS; ++j) {
     slab.share[j].even = Number(-0.5f) * even.of[j];
     slab.share[j].odd = Number(0.5f) * odd.of[j];
@@ -244,6 +253,7 @@ SHARED_FN SlabPowers streamPowers(SHARED_IN(StreamModes) modes, SHARED_IN(ModeWe
   SlabModes slab = slabModes(modes, at);
   Number sum = Number(0.0f);
   Number difference = Number(0.0f);
+#pragma GCC unroll 8
   for (int j = 0; j < STREAMS; ++j) {
     ModeField field = modeField(modes.mode[j], slab.share[j], slab.shapes[j], at);
     sum += weights.sum[j] * field.sum;
@@ -261,6 +271,7 @@ SHARED_FN Number streamRadiance(SHARED_IN(StreamModes) modes, SHARED_IN(ModeWeig
                                 bool downward, Number view_rate, Number view_fade, Number beam) {
   SlabModes slab = slabModes(modes, at);
   Number radiance = Number(0.0f);
+#pragma GCC unroll 8
   for (int j = 0; j < STREAMS; ++j) {
     ModeField mean;
     if (downward)

@@ -51,7 +51,7 @@ void StreamSlab<Real>::addModes(const StreamModes& modes) {
   using Precise = StreamFormulas<double>;
   const Index n = static_cast<Index>(modes.rate.size());
   const ModeCouplings couplings = modeCouplings(constants_, modes);
-  const Matrix S = Eigen::Map<const Matrix>(couplings.sum_of_difference.data(), n, n);
+  const Matrix Q = Eigen::Map<const Matrix>(couplings.sum_of_difference.data(), n, n);
   const Matrix R = Eigen::Map<const Matrix>(couplings.difference_of_sum.data(), n, n);
   const double thickness = static_cast<double>(thickness_);
   const auto end = Precise::slabPlace(thickness, thickness, constants_.depth_scale, 1. / constants_.medium.mu0);
@@ -67,7 +67,7 @@ void StreamSlab<Real>::addModes(const StreamModes& modes) {
     odd_source[j] = entering * (1. + end.direct_through) + k * gained[j];
   }
   const Matrix identity = Matrix::Identity(n, n);
-  const Vector even = (identity + S * squared_tangent.asDiagonal()).partialPivLu().solve(gained + S * even_source);
+  const Vector even = (identity + Q * squared_tangent.asDiagonal()).partialPivLu().solve(gained + Q * even_source);
   const Vector odd = (identity + R * tangent.asDiagonal()).partialPivLu().solve(odd_source - R * gained);
   for (Index j = 0; j < n; ++j) {
     const std::size_t at = static_cast<std::size_t>(j);

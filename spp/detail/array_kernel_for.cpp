@@ -26,15 +26,13 @@ void store(Lanes value, float* to, std::size_t lanes) {
     for (std::size_t i = 0; i < lanes; ++i) to[i] = value.of[i];
 }
 
-// Calls f(depth, thickness, first place, number of places) for as many places as a vector has lanes, then for the rest.
+// Calls f(depth, thickness, first place, number of places) for as many places as a vector has lanes, at last for fewer.
 template <typename F>
-void forBlocks(const Places& places, F&& f) {
-  const auto block = [&](std::size_t first, std::size_t lanes) {
+[[gnu::always_inline]] inline void forBlocks(const Places& places, F&& f) {
+  for (std::size_t first = 0; first < places.count; first += kLanes) {
+    const std::size_t lanes = places.count - first < kLanes ? places.count - first : kLanes;
     f(loaded(places.depth + first, lanes), loaded(places.thickness + first, lanes), first, lanes);
-  };
-  std::size_t first = 0;
-  for (; first + kLanes <= places.count; first += kLanes) block(first, kLanes);
-  if (first < places.count) block(first, places.count - first);
+  }
 }
 
 // A struct of Lanes, each alike in all lanes, from as many numbers.

@@ -55,7 +55,7 @@ inline Lanes sqrt(Lanes a) {
 }
 
 // e^x for x <= 0, -infinity included, to 1 unit in the last place; 0 where it would be below the normal numbers.
-inline Lanes exp(Lanes x) {
+[[gnu::always_inline]] inline Lanes exp(Lanes x) {
   constexpr float kLowest = -87.3365f;
   constexpr float kShift = 0x1.8p23f;  // adding it leaves the nearest integer in the low bits
   const Floats y = max(x, kLowest).of;
