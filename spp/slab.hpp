@@ -43,21 +43,23 @@ constexpr std::array<Real, kDegree + 1> decaySeries() {
 }
 
 // Degrees that leave less than half a rounding for |x| < 1/2.
-inline constexpr auto kSingleSeries = decaySeries<float, 7>();
-inline constexpr auto kDoubleSeries = decaySeries<double, 13>();
+template <typename Real>
+inline constexpr int kSeriesDegree = std::is_same_v<Real, float> ? 7 : 13;
+template <typename Real>
+inline constexpr auto kSeries = decaySeries<Real, kSeriesDegree<Real>>();
 
 }  // namespace detail
 
 #define SHARED_FN inline
 #define SHARED_IN(Type) Type
-inline constexpr const float* kDecaySeries = detail::kSingleSeries.data();
-inline constexpr int kSeriesDegree = 7;
+inline constexpr const float* kDecaySeries = detail::kSeries<float>.data();
+inline constexpr int kSeriesDegree = detail::kSeriesDegree<float>;
 #include "spp/spp_formulas.glsl"
 
 namespace precise {
 using Number = double;
-inline constexpr const double* kDecaySeries = detail::kDoubleSeries.data();
-inline constexpr int kSeriesDegree = 13;
+inline constexpr const double* kDecaySeries = detail::kSeries<double>.data();
+inline constexpr int kSeriesDegree = detail::kSeriesDegree<double>;
 #include "spp/spp_formulas.glsl"
 }  // namespace precise
 #undef SHARED_FN
@@ -78,8 +80,9 @@ struct StreamFormulas {
 #define SHARED_FN [[gnu::always_inline]] static inline
 #endif
 #define SHARED_IN(Type) const Type&
-  static constexpr int kSeriesDegree = std::is_same_v<typename PrecisionOf<Number>::Real, float> ? 7 : 13;
-  static constexpr auto kDecaySeries = detail::decaySeries<typename PrecisionOf<Number>::Real, kSeriesDegree>();
+  using Real = typename PrecisionOf<Number>::Real;
+  static constexpr const Real* kDecaySeries = detail::kSeries<Real>.data();
+  static constexpr int kSeriesDegree = detail::kSeriesDegree<Real>;
 #include "spp/spp_formulas.glsl"
 #include "spp/stream_formulas.glsl"
 #undef SHARED_FN

@@ -32,7 +32,6 @@ struct Dual {
   Dual& operator-=(Dual b) { return *this = *this - b; }
   Dual& operator*=(Dual b) { return *this = *this * b; }
   friend bool operator<(Dual a, Dual b) { return a.value < b.value; }
-  friend bool operator>(Dual a, Dual b) { return a.value > b.value; }
 };
 Dual exp(Dual a) {
   return {std::exp(a.value), a.slope == 0. ? 0. : a.slope * std::exp(a.value)};
