@@ -130,8 +130,7 @@ void nStream(benchmark::State& state) {
 }
 BENCHMARK(nStream)->Name("nstream")->ArgName("n")->Arg(1)->Arg(2)->Arg(3)->Arg(4)->Arg(8);
 
-// Refined radiance of the azimuth's mean, downward into `down` (mu 0.6) or upward into `up` (mu -0.6); the mean of both
-// is what is timed: half of the leaves each way.
+// Refined radiance of the azimuth's mean towards one direction, mu 0.6 (downward) or -0.6.
 void refinedRadiance(benchmark::State& state, const spp::StreamConstants& constants, double mu) {
   Leaves leaves;
   const spp::StreamArrays arrays(constants);
