@@ -31,7 +31,7 @@ constexpr std::uint64_t kPlaces = 4096;  // of one medium
 // For light of power 1; radiance above 1, which strong forward scattering has, is held relative to itself.
 constexpr double kTolerance = 5e-6;
 // Where nearly all light is thrown straight back, the faces' share of a mode is large, and its two parts, symmetric and
-// antisymmetric, cancel in thick slabs: 8.2e-6 was met, above 5e-6 in 14 of 200 million places.
+// antisymmetric, cancel: 8.2e-6 was met, above 5e-6 in 14 of 200 million places.
 constexpr double kBackwardTolerance = 1e-5;
 double radianceTolerance(int streams, double asymmetry) {
   return streams > 2 && asymmetry < -0.99 ? kBackwardTolerance : kTolerance;

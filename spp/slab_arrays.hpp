@@ -11,8 +11,8 @@
 // holds. Each place has a depth and a slab's thickness of its own, both true optical depths [1]: thickness >= 0, may be
 // infinite; what lies outside the slab counts as its face. All spans of a call have one size, the number of places; no
 // output may overlap another. Results are finite, not negative, and within 5e-6 of those in double precision: absolute
-// for light of power 1, relative for radiance above 1 (bench/stress_spp.cpp; radiance of 8 streams for g < -0.99:
-// 1e-5). Each place's result is the same whatever places are beside it.
+// for light of power 1, relative for radiance above 1 (bench/stress_spp.cpp; radiance of 3 streams and more for
+// g < -0.99: 1e-5). Each place's result is the same whatever places are beside it.
 namespace sunfleck::spp {
 
 // (S2) P+ and P- [F] of SPP. mu0 (0, 1], albedo and forward_share 0 .. 1, as in spp_formulas.glsl.
