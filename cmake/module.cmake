@@ -72,3 +72,34 @@ function(sunfleck_module)
     endforeach()
   endforeach()
 endfunction()
+
+# sunfleck_kernel(<target> <source>): compiles a source of a target once for each instruction set, with SUNFLECK_ISA, its
+# name, and SUNFLECK_VECTOR_BYTES, the size of its vectors; the program chooses when it runs (core/instruction_set.hpp).
+# Each puts its code in a namespace SUNFLECK_ISA, or code of one set could stand in for another's. Where there is more
+# than the baseline the target has SUNFLECK_X86 defined.
+function(sunfleck_kernel target source)
+  set(baseline_bytes 16)
+  set(avx2_bytes 32)
+  set(avx2_flags -mavx2 -mfma)
+  set(avx512_bytes 64)
+  set(avx512_flags -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512)
+  set(optimised -O3)
+  if(SUNFLECK_SANITIZE)
+    set(optimised -O1)  # the checks between unrolled code would compile for minutes
+  endif()
+  set(sets baseline)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND sets avx2 avx512)
+    target_compile_definitions(${target} PRIVATE SUNFLECK_X86)
+  endif()
+  foreach(isa IN LISTS sets)
+    set(kernel ${target}_kernel_${isa})
+    add_library(${kernel} OBJECT ${source})
+    target_compile_definitions(${kernel} PRIVATE SUNFLECK_ISA=${isa} SUNFLECK_VECTOR_BYTES=${${isa}_bytes})
+    target_compile_options(${kernel} PRIVATE ${optimised} -fno-math-errno -ffp-contract=fast -fopenmp-simd -Wno-psabi
+      ${${isa}_flags})
+    target_include_directories(${kernel} PRIVATE "${PROJECT_SOURCE_DIR}")
+    target_link_libraries(${kernel} PRIVATE sunfleck_options)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${kernel}>)
+  endforeach()
+endfunction()

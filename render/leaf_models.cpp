@@ -2,11 +2,15 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <span>
 
 #include "grid/instance_cells.hpp"
 #include "grid/neighbours.hpp"
 #include "spp/slab.hpp"
+#include "spp/slab_arrays.hpp"
 
 namespace sunfleck {
 namespace {
@@ -21,12 +25,25 @@ constexpr float kMu0 = 1.f;  // the slab's normal is the light's axis
 // half as back: the paper's experiment. For other leaves it is an approximation.
 constexpr float kForwardShare = 0.5f;
 
-float irradianceOf(Model model, float projection, float depth, float thickness, float compensation, float albedo) {
-  const float direct = spp::directPower(depth, kMu0);
-  if (model == Model::ss) return spp::leafIrradiance(projection, direct, {.down = direct, .up = 0.f});
-  const spp::SlabPowers slab = spp::sppPowers(depth, thickness, kMu0, albedo, kForwardShare);
-  const float g = model == Model::sppg ? compensation : 1.f;
-  return spp::leafIrradiance(projection, direct, spp::compensated(slab, direct, g));
+// Leaves whose powers are computed at once: few enough to stay in the nearest cache.
+constexpr std::size_t kBlock = 1024;
+
+// Adds to `sum` what each leaf of a block receives in one tree of the stand.
+void addIrradiance(Model model, std::span<const float> projection, std::span<const float> depth,
+                   std::span<const float> thickness, std::span<const float> compensation, float albedo,
+                   std::span<float> sum) {
+  std::array<float, kBlock> down, up;
+  const std::size_t leaves = sum.size();
+  if (model != Model::ss)
+    spp::sppPowers(depth, thickness, kMu0, albedo, kForwardShare, std::span(down).first(leaves),
+                   std::span(up).first(leaves));
+  for (std::size_t i = 0; i < leaves; ++i) {
+    const float direct = spp::directPower(depth[i], kMu0);
+    spp::SlabPowers powers{.down = direct, .up = 0.f};
+    if (model != Model::ss) powers = {.down = down[i], .up = up[i]};
+    if (model == Model::sppg) powers = spp::compensated(powers, direct, compensation[i]);
+    sum[i] += spp::leafIrradiance(projection[i], direct, powers);
+  }
 }
 
 }  // namespace
@@ -56,14 +73,16 @@ LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand) {
 }
 
 std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, const LeafOptics& optics) {
-  const std::size_t trees = geometry.depths.size();
-  std::vector<float> irradiance(geometry.projections.size());
-  tbb::parallel_for(std::size_t{0}, irradiance.size(), [&](std::size_t leaf) {
-    float sum = 0.f;
+  const std::size_t trees = geometry.depths.size(), leaves = geometry.projections.size();
+  std::vector<float> irradiance(leaves);
+  tbb::parallel_for(std::size_t{0}, (leaves + kBlock - 1) / kBlock, [&](std::size_t block) {
+    const std::size_t first = block * kBlock, count = std::min(kBlock, leaves - first);
+    const auto part = [&](const std::vector<float>& all) { return std::span(all).subspan(first, count); };
+    const std::span<float> sum = std::span(irradiance).subspan(first, count);
     for (std::size_t tree = 0; tree < trees; ++tree)
-      sum += irradianceOf(model, geometry.projections[leaf], geometry.depths[tree].depth[leaf],
-                          geometry.depths[tree].thickness[leaf], geometry.compensation[tree][leaf], optics.albedo());
-    irradiance[leaf] = sum / static_cast<float>(trees);
+      addIrradiance(model, part(geometry.projections), part(geometry.depths[tree].depth),
+                    part(geometry.depths[tree].thickness), part(geometry.compensation[tree]), optics.albedo(), sum);
+    for (float& value : sum) value /= static_cast<float>(trees);
   });
   return irradiance;
 }

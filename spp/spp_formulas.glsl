@@ -1,18 +1,33 @@
 // Closed forms of light in a plane-parallel slab of leaves, and their compensation for the edge of a crown. This text is
-// C++ and GLSL: values in, a value or a struct out; literals with f; no sampling, no globals. The equations stand in
-// docs/EQUATIONS.md.
+// C++ (for single numbers and for lanes of a vector) and GLSL: values in, a value or a struct out; literals with f; no
+// sampling, no globals, no branch on a Number but select(). The equations stand in docs/EQUATIONS.md.
 //
 // The slab's optical depth counts leaf crossings along its normal, from 0 at the lit face to `thickness` at the other.
 // F, the power that arrives through a plane facing the light, is 1.
 //   depth          z      optical depth of the place below the lit face                        [1], 0 .. thickness
-//   thickness      w      optical thickness of the slab; may be infinite                       [1], > 0
+//   thickness      w      optical thickness of the slab; may be infinite                       [1], >= 0
 //   mu0                   |cos| of the light's direction to the slab's normal                  [1], (0, 1]
 //   albedo         omega  share of the light that meets a leaf and is scattered                [1], 0 .. 1
 //   forward_share  T      share of the scattered light that goes on into the forward half      [1], 0 .. 1
 
-// (1 - e^-x) / x, which is 1 at x = 0; x >= 0.
-SHARED_FN Number decayMean(Number x) {
-  return x > Number(0.0f) ? -expm1(-x) / x : Number(1.0f);
+// (1 - e^-x) / x for |x| < 1/2, where the difference would lose its digits: Taylor's series to a rounding.
+SHARED_FN Number decaySeries(Number x) {
+  Number sum = Number(kDecaySeries[kSeriesDegree]);
+  for (int n = kSeriesDegree - 1; n >= 0; --n) sum = sum * x + Number(kDecaySeries[n]);
+  return sum;
+}
+
+// D(p, q, z) = (e^-pz - e^-qz) / (q - p), which is z e^-pz where p = q, given the two exponentials `ep` and `eq`.
+SHARED_FN Number rateQuotient(Number p, Number q, Number z, Number ep, Number eq) {
+  Number gap = q - p;
+  Number inverse = Number(1.0f) / gap;
+  Number x = gap * z;
+  return select(abs(x) < Number(0.5f), z * ep * decaySeries(x), (ep - eq) * inverse);
+}
+
+// Integral of e^-rate t over t = 0 .. z; rate >= 0.
+SHARED_FN Number decayIntegral(Number rate, Number z) {
+  return rateQuotient(Number(0.0f), rate, z, Number(1.0f), exp(-rate * z));
 }
 
 struct SlabPowers {
@@ -30,16 +45,19 @@ SHARED_FN Number directPower(Number depth, Number mu0) {
 SHARED_FN SlabPowers sppPowers(Number depth, Number thickness, Number mu0, Number albedo, Number forward_share) {
   Number backward_share = Number(1.0f) - forward_share;
   Number w = min(thickness, Number(1.0e30f));  // as good as infinite, and its products are still numbers
-  Number z = min(depth, w);
+  Number z = min(max(depth, Number(0.0f)), w);
+  Number rest = w - z;
   Number lost = Number(1.0f) - albedo;
   Number gamma = lost + albedo * backward_share;  // 1 - omega T
   Number k = sqrt((lost + Number(2.0f) * albedo * backward_share) * lost) / mu0;
   // sh(x) = (1 - e^-2kx) / 2k and ch(x) = (1 + e^-2kx) / 2: sinh and cosh without their growing factor.
-  Number rest = w - z;
-  Number sh_w = w * decayMean(Number(2.0f) * k * w);
-  Number sh_rest = rest * decayMean(Number(2.0f) * k * rest);
-  Number ch_w = Number(0.5f) * (Number(1.0f) + exp(Number(-2.0f) * k * w));
-  Number ch_rest = Number(0.5f) * (Number(1.0f) + exp(Number(-2.0f) * k * rest));
+  Number rate = Number(2.0f) * k;
+  Number fade_w = exp(-rate * w);
+  Number fade_rest = exp(-rate * rest);
+  Number sh_w = rateQuotient(Number(0.0f), rate, w, Number(1.0f), fade_w);
+  Number sh_rest = rateQuotient(Number(0.0f), rate, rest, Number(1.0f), fade_rest);
+  Number ch_w = Number(0.5f) * (Number(1.0f) + fade_w);
+  Number ch_rest = Number(0.5f) * (Number(1.0f) + fade_rest);
   Number scale = exp(-k * z) / (mu0 * ch_w + gamma * sh_w);
   SlabPowers powers;
   powers.down = scale * (mu0 * ch_rest + gamma * sh_rest);
@@ -70,13 +88,12 @@ SHARED_FN Number leafIrradiance(Number projection, Number direct, SlabPowers pow
 //   edge    h: optical distance to the edge of the foliage in that direction                                [1], >= 0
 SHARED_FN Number shareBeyondEdge(Number cosine, Number edge, Number depth, Number thickness, Number mu0) {
   Number w = min(thickness, Number(1.0e7f));
-  Number normal_way = cosine > Number(0.0f) ? min(depth, w) : max(w - depth, Number(0.0f));
+  Number normal_way = select(cosine > Number(0.0f), min(depth, w), max(w - depth, Number(0.0f)));
   Number face = min(normal_way / max(abs(cosine), Number(1.0e-7f)), Number(1.0e7f));
-  if (edge >= face) return Number(0.0f);
   Number a = Number(1.0f) - cosine / mu0;
-  Number beyond = face - edge;
-  return exp(-max(a, Number(0.0f)) * edge) * (beyond / face) * decayMean(abs(a) * beyond) /
-         decayMean(abs(a) * face);
+  Number beyond = max(face - edge, Number(0.0f));
+  Number share = exp(-max(a, Number(0.0f)) * edge) * decayIntegral(abs(a), beyond) / decayIntegral(abs(a), face);
+  return select(beyond > Number(0.0f), share, Number(0.0f));
 }
 
 // (S6) SPPG, Eq. 28: the slab's light where the crown is like a slab (G = 1), direct light alone where it is not (G = 0).

@@ -28,8 +28,8 @@ inline constexpr int kMostStreams = 32;
 // its share in every stream. Matrices are stored row after row, n columns, one for each mode. With W the solid angles
 // over 2 pi and M the cosines of the streams, X' W M Y = 1.
 struct StreamModes {
-  std::vector<double> rate, odd_source, gain;  // k, a, g of each mode (stream_formulas.glsl)
-  std::vector<double> sum, difference;         // X, Y: n rows, the streams
+  std::vector<double> rate, entering, gain;  // k, a - g, g of each mode (stream_formulas.glsl)
+  std::vector<double> sum, difference;       // X, Y: n rows, the streams
 };
 
 // What of the streams is scattered towards the eye, per extinction there: with S, D the sum and the difference of the

@@ -6,22 +6,18 @@
 #include <cmath>
 
 #include "core/require.hpp"
+#include "spp/mode_numbers.hpp"
 
 namespace sunfleck::spp {
 
-// The formulas in both precisions, told apart by their arguments.
-using precise::beamAlongDownward;
-using precise::beamAlongUpward;
-using precise::halfTangent;
-using precise::modeAlongDownward;
-using precise::modeAlongUpward;
-using precise::modeField;
-using precise::rateQuotient;
-
 namespace {
 
-// As good as infinite: squared it still is a number of single precision.
-constexpr double kInfiniteThickness = 1e15;
+template <typename Real>
+std::vector<Real> numbers(const std::vector<double>& values) {
+  std::vector<Real> result;
+  for (const double value : values) result.push_back(static_cast<Real>(value));
+  return result;
+}
 
 template <typename Real>
 Real atLeastZero(Real value) {
@@ -33,73 +29,60 @@ Real atLeastZero(Real value) {
 template <typename Real>
 StreamSlab<Real>::StreamSlab(StreamConstants constants, Real thickness)
     : constants_(std::move(constants)),
+      thickness_(thickness),
       depth_scale_(static_cast<Real>(constants_.depth_scale)),
       beam_rate_(static_cast<Real>(constants_.beam_rate)),
       mu0_(static_cast<Real>(constants_.beam.mu0)),
       beam_projection_(static_cast<Real>(constants_.beam_projection)) {
   require(thickness > Real(0), "thickness", thickness, "above 0");
-  thickness_ = std::min(thickness * depth_scale_, static_cast<Real>(kInfiniteThickness));
   for (const StreamModes& modes : constants_.orders) addModes(modes);
-
-  const StreamModes& mean = constants_.orders.front();
-  const std::size_t n = mean.rate.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    double power_sum = 0., power_difference = 0., flux_sum = 0., flux_difference = 0., met_sum = 0.;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double angle = constants_.solid_angles[i], cosine = constants_.cosines[i];
-      power_sum += angle * mean.sum[i * n + j];
-      power_difference += angle * mean.difference[i * n + j];
-      met_sum += angle * constants_.projections[i] * mean.sum[i * n + j];
-      flux_sum += angle * cosine * mean.sum[i * n + j];
-      flux_difference += angle * cosine * mean.difference[i * n + j];
-    }
-    power_sum_.push_back(static_cast<Real>(power_sum));
-    power_difference_.push_back(static_cast<Real>(power_difference));
-    met_sum_.push_back(static_cast<Real>(met_sum));
-    flux_sum_.push_back(static_cast<Real>(flux_sum));
-    flux_difference_.push_back(static_cast<Real>(flux_difference));
-  }
+  const PowerWeights weights = powerWeights(constants_);
+  power_sum_ = numbers<Real>(weights.power_sum);
+  power_difference_ = numbers<Real>(weights.power_difference);
+  flux_sum_ = numbers<Real>(weights.flux_sum);
+  met_sum_ = numbers<Real>(weights.met_sum);
+  flux_difference_ = numbers<Real>(weights.flux_difference);
 }
 
-// No diffuse light enters: sum + difference = 0 at the lit face, sum - difference = 0 at the other, for each stream.
-// Adding and subtracting the two parts what is symmetric about the middle from what is antisymmetric.
+// As slabModes of stream_formulas.glsl, in double for both precisions and for any number of modes.
 template <typename Real>
 void StreamSlab<Real>::addModes(const StreamModes& modes) {
   using Eigen::Index;
-  using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
-  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using Matrix = Eigen::MatrixXd;
+  using Vector = Eigen::VectorXd;
+  using Precise = StreamFormulas<double>;
   const Index n = static_cast<Index>(modes.rate.size());
-  const Matrix X = Eigen::Map<const Rows>(modes.sum.data(), n, n).template cast<Real>();
-  const Matrix Y = Eigen::Map<const Rows>(modes.difference.data(), n, n).template cast<Real>();
-  const Real direct = std::exp(-beam_rate_ * thickness_);
-  Vector tangent(n), squared_tangent(n), gained(n), first(n), last(n);
+  const ModeCouplings couplings = modeCouplings(constants_, modes);
+  const Matrix Q = Eigen::Map<const Matrix>(couplings.sum_of_difference.data(), n, n);
+  const Matrix R = Eigen::Map<const Matrix>(couplings.difference_of_sum.data(), n, n);
+  const double thickness = static_cast<double>(thickness_);
+  const auto end = Precise::slabPlace(thickness, thickness, constants_.depth_scale, constants_.beam_rate);
+  Vector tangent(n), squared_tangent(n), gained(n), even_source(n), odd_source(n);
   for (Index j = 0; j < n; ++j) {
     const std::size_t at = static_cast<std::size_t>(j);
-    const Real k = static_cast<Real>(modes.rate[at]), gain = static_cast<Real>(modes.gain[at]);
-    tangent[j] = halfTangent(k, thickness_);
+    const double k = modes.rate[at], entering = modes.entering[at];
+    const auto shapes = Precise::modeShapes(k, end);
+    tangent[j] = shapes.half_tangent;
     squared_tangent[j] = k * (k * tangent[j]);
-    gained[j] = gain * rateQuotient(k, beam_rate_, thickness_);
-    first[j] = static_cast<Real>(modes.odd_source[at]) - gain;
-    last[j] = first[j] * direct + k * gained[j];
+    gained[j] = modes.gain[at] * shapes.gained_through;
+    even_source[j] = entering * (1. - end.direct_through) - k * gained[j];
+    odd_source[j] = entering * (1. + end.direct_through) + k * gained[j];
   }
-  const Vector at_lit_face = Y * first, at_other_face = X * gained - Y * last;
-  const Vector even =
-      (X + Y * squared_tangent.asDiagonal()).partialPivLu().solve(Real(-0.5) * (at_lit_face + at_other_face));
-  const Vector odd = (X * tangent.asDiagonal() + Y).partialPivLu().solve(Real(0.5) * (at_lit_face - at_other_face));
+  const Matrix identity = Matrix::Identity(n, n);
+  const Vector even = (identity + Q * squared_tangent.asDiagonal()).partialPivLu().solve(gained + Q * even_source);
+  const Vector odd = (identity + R * tangent.asDiagonal()).partialPivLu().solve(odd_source - R * gained);
   for (Index j = 0; j < n; ++j) {
     const std::size_t at = static_cast<std::size_t>(j);
     modes_.push_back({.mode = {.rate = static_cast<Real>(modes.rate[at]),
-                               .odd_source = static_cast<Real>(modes.odd_source[at]),
-                               .gain = static_cast<Real>(modes.gain[at])},
-                      .even = even[j],
-                      .odd = odd[j]});
+                               .gain = static_cast<Real>(modes.gain[at]),
+                               .entering = static_cast<Real>(modes.entering[at])},
+                      .share = {.even = static_cast<Real>(-0.5 * even[j]), .odd = static_cast<Real>(0.5 * odd[j])}});
   }
 }
 
 template <typename Real>
-Real StreamSlab<Real>::scaledDepth(Real depth) const {
-  return depth > Real(0) ? std::min(depth * depth_scale_, thickness_) : Real(0);
+typename StreamSlab<Real>::Formulas::SlabPlace StreamSlab<Real>::place(Real depth) const {
+  return Formulas::slabPlace(depth, thickness_, depth_scale_, beam_rate_);
 }
 
 template <typename Real>
@@ -109,28 +92,29 @@ Real StreamSlab<Real>::reflectance() const {
 
 template <typename Real>
 Real StreamSlab<Real>::transmittance() const {
-  return light(thickness_ / depth_scale_).flux_down / mu0_;
+  return light(thickness_).flux_down / mu0_;
 }
 
 template <typename Real>
 SlabLight<Real> StreamSlab<Real>::light(Real depth) const {
-  const Real z = scaledDepth(depth);
+  const auto at = place(depth);
   Real power_sum(0), power_difference(0), flux_sum(0), flux_difference(0), met_sum(0);
   for (std::size_t j = 0; j < power_sum_.size(); ++j) {
-    const auto field = modeField(modes_[j], z, thickness_, beam_rate_);
+    const auto field =
+        Formulas::modeField(modes_[j].mode, modes_[j].share, Formulas::modeShapes(modes_[j].mode.rate, at), at);
     power_sum += power_sum_[j] * field.sum;
     power_difference += power_difference_[j] * field.difference;
     met_sum += met_sum_[j] * field.sum;
     flux_sum += flux_sum_[j] * field.sum;
     flux_difference += flux_difference_[j] * field.difference;
   }
-  const Real direct = std::exp(-beam_rate_ * z);  // with what the forward peak added to it
-  return {.power_down = direct + atLeastZero(Real(0.5) * (power_sum + power_difference)),
+  // The direct light of the scaled medium holds what the forward peak added to it.
+  return {.power_down = at.direct + atLeastZero(Real(0.5) * (power_sum + power_difference)),
           .power_up = atLeastZero(Real(0.5) * (power_sum - power_difference)),
-          .flux_down = mu0_ * direct + atLeastZero(Real(0.5) * (flux_sum + flux_difference)),
+          .flux_down = mu0_ * at.direct + atLeastZero(Real(0.5) * (flux_sum + flux_difference)),
           .flux_up = atLeastZero(Real(0.5) * (flux_sum - flux_difference)),
-          .direct = std::exp(-beam_rate_ * (z / depth_scale_)),
-          .leaf_irradiance = beam_projection_ * direct + atLeastZero(met_sum)};
+          .direct = std::exp(-beam_rate_ * (at.depth / depth_scale_)),
+          .leaf_irradiance = beam_projection_ * at.direct + atLeastZero(met_sum)};
 }
 
 template <typename Real>
@@ -161,14 +145,18 @@ typename StreamSlab<Real>::View StreamSlab<Real>::view(double mu, double azimuth
 
 template <typename Real>
 Real StreamSlab<Real>::refinedRadiance(Real depth, const View& view) const {
-  const Real z = scaledDepth(depth), rate = view.rate;
+  const auto at = place(depth);
   const bool downward = view.cosine > Real(0);
-  Real radiance = view.beam_source * (downward ? beamAlongDownward(z, beam_rate_, rate)
-                                               : beamAlongUpward(z, thickness_, beam_rate_, rate));
+  const Real fade = std::exp(-view.rate * (downward ? at.depth : at.rest));
+  const Real beam =
+      downward ? Formulas::beamAlongDownward(at, view.rate, fade) : Formulas::beamAlongUpward(at, view.rate, fade);
+  Real radiance = view.beam_source * beam;
   assert(view.seen_sum.size() == modes_.size());
   for (std::size_t j = 0; j < modes_.size(); ++j) {
-    const auto mean = downward ? modeAlongDownward(modes_[j], z, thickness_, beam_rate_, rate)
-                               : modeAlongUpward(modes_[j], z, thickness_, beam_rate_, rate);
+    const auto& [mode, share] = modes_[j];
+    const auto shapes = Formulas::modeShapes(mode.rate, at);
+    const auto mean = downward ? Formulas::modeAlongDownward(mode, share, shapes, at, view.rate, fade, beam)
+                               : Formulas::modeAlongUpward(mode, share, shapes, at, view.rate, fade, beam);
     radiance += view.seen_sum[j] * mean.sum + view.seen_difference[j] * mean.difference;
   }
   return atLeastZero(radiance);
@@ -178,13 +166,14 @@ template <typename Real>
 Real StreamSlab<Real>::streamRadiance(Real depth, int stream, bool downward, int order) const {
   const std::size_t n = constants_.cosines.size(), first = static_cast<std::size_t>(order) * n;
   const StreamModes& modes = constants_.orders[static_cast<std::size_t>(order)];
-  const Real z = scaledDepth(depth);
+  const auto at = place(depth);
   Real sum(0), difference(0);
   for (std::size_t j = 0; j < n; ++j) {
-    const std::size_t at = static_cast<std::size_t>(stream) * n + j;
-    const auto field = modeField(modes_[first + j], z, thickness_, beam_rate_);
-    sum += static_cast<Real>(modes.sum[at]) * field.sum;
-    difference += static_cast<Real>(modes.difference[at]) * field.difference;
+    const std::size_t element = static_cast<std::size_t>(stream) * n + j;
+    const auto& [mode, share] = modes_[first + j];
+    const auto field = Formulas::modeField(mode, share, Formulas::modeShapes(mode.rate, at), at);
+    sum += static_cast<Real>(modes.sum[element]) * field.sum;
+    difference += static_cast<Real>(modes.difference[element]) * field.difference;
   }
   return Real(0.5) * (downward ? sum + difference : sum - difference);
 }

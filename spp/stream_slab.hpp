@@ -1,6 +1,5 @@
 #pragma once
 
-#include <type_traits>
 #include <vector>
 
 #include "spp/slab.hpp"
@@ -51,15 +50,17 @@ class StreamSlab {
   Real streamRadiance(Real depth, int stream, bool downward, int order = 0) const;
 
  private:
-  static constexpr bool kSingle = std::is_same_v<Real, float>;
-  using Mode = std::conditional_t<kSingle, SlabMode, precise::SlabMode>;
+  using Formulas = StreamFormulas<Real>;
+  struct Mode {
+    typename Formulas::StreamMode mode;
+    typename Formulas::ModeShare share;
+  };
 
   void addModes(const StreamModes& modes);
-  Real scaledDepth(Real depth) const;
+  typename Formulas::SlabPlace place(Real depth) const;
 
   StreamConstants constants_;
-  Real thickness_;  // scaled
-  Real depth_scale_, beam_rate_, mu0_, beam_projection_;
+  Real thickness_, depth_scale_, beam_rate_, mu0_, beam_projection_;
   std::vector<Mode> modes_;  // of order 0, then of order 1 ...
   std::vector<Real> power_sum_, power_difference_, flux_sum_, flux_difference_, met_sum_;  // of the modes of order 0
 };

@@ -50,12 +50,10 @@ std::optional<StreamModes> streamModes(const StreamSystem& system) {
 
   const VectorXd a = inverse_CV.transpose() * inverse_cosines.cwiseProduct(root).cwiseProduct(system.odd_source);
   const VectorXd b = CV.transpose() * root.cwiseProduct(system.even_source);
-  const VectorXd gain =
-      (b + a * system.beam_rate)
-          .cwiseQuotient(k.array().max(1e-300).matrix() + VectorXd::Constant(k.size(), system.beam_rate));
+  const VectorXd rates = k.array().max(1e-300).matrix() + VectorXd::Constant(k.size(), system.beam_rate);
   return StreamModes{.rate = stored(k),
-                     .odd_source = stored(a),
-                     .gain = stored(gain),
+                     .entering = stored((a.cwiseProduct(k) - b).cwiseQuotient(rates)),
+                     .gain = stored((b + a * system.beam_rate).cwiseQuotient(rates)),
                      .sum = stored(root.cwiseInverse().asDiagonal() * CV),
                      .difference = stored(root.cwiseProduct(system.cosines).cwiseInverse().asDiagonal() * inverse_CV)};
 }

@@ -41,8 +41,13 @@ TEST(S10_RateQuotientOfThree, IsItsIntegral) {
   for (double p : {0., 0.3, 1.})
     for (double q : {0., 0.3, 0.3 + 1e-9, 0.7999999, 0.8000001, 2., 8.})
       for (double r : {0., 0.3, 0.55, 0.8, 2.}) {
-        const auto inner = [&](double t) { return std::exp(-r * (z - t)) * precise::rateQuotient(p, q, t); };
-        EXPECT_NEAR(precise::rateQuotientOfThree(p, q, r, z), simpson(inner, 0., z, 1000), 1e-12) << p << " " << q;
+        const auto inner = [&](double t) {
+          return std::exp(-r * (z - t)) * precise::rateQuotient(p, q, t, std::exp(-p * t), std::exp(-q * t));
+        };
+        EXPECT_NEAR(StreamFormulas<double>::rateQuotientOfThree(p, q, r, z, std::exp(-p * z), std::exp(-q * z),
+                                                                std::exp(-r * z)),
+                    simpson(inner, 0., z, 1000), 1e-12)
+            << p << " " << q;
       }
 }
 

@@ -1,7 +1,6 @@
 #include "pp_solver/detail/kernel.hpp"
 
-#include <cstdlib>
-#include <string_view>
+#include "core/instruction_set.hpp"
 
 namespace sunfleck::pp {
 
@@ -22,14 +21,13 @@ namespace {
 
 const Kernel& choose() {
 #ifdef SUNFLECK_X86
-  // SUNFLECK_SIMD=baseline or avx2 tries what an older machine would do.
-  const char* wanted = std::getenv("SUNFLECK_SIMD");
-  const std::string_view limit = wanted == nullptr ? "" : wanted;
-  if (limit != "baseline") {
-    if (limit != "avx2" && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl"))
+  switch (instructionSet()) {
+    case InstructionSet::avx512:
       return avx512::the_kernel;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::the_kernel;
+    case InstructionSet::avx2:
+      return avx2::the_kernel;
+    case InstructionSet::baseline:
+      break;
   }
 #endif
   return baseline::the_kernel;

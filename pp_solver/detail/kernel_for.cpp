@@ -1,4 +1,4 @@
-// Compiled once for each instruction set, see pp_solver/CMakeLists.txt.
+// Compiled once for each instruction set (sunfleck_kernel in cmake/module.cmake).
 #include "pp_solver/detail/boundaries.hpp"
 #include "pp_solver/detail/kernel.hpp"
 #include "pp_solver/detail/radiance.hpp"

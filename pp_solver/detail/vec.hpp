@@ -3,10 +3,11 @@
 #include <cstdint>
 
 // Vectors of the width one instruction set has. This header and those that include it are compiled once for each set,
-// in a namespace of its own (SUNFLECK_ISA, SUNFLECK_LANES come from the build), and hold no code that others share.
+// in a namespace of its own (SUNFLECK_ISA, SUNFLECK_VECTOR_BYTES come from the build), and hold no code that others
+// share.
 namespace sunfleck::pp::SUNFLECK_ISA {
 
-constexpr int kLanes = SUNFLECK_LANES;
+constexpr int kLanes = SUNFLECK_VECTOR_BYTES / sizeof(double);
 typedef double Vec __attribute__((vector_size(8 * kLanes), may_alias));
 typedef std::int64_t Mask __attribute__((vector_size(8 * kLanes), may_alias));
 

@@ -1,20 +1,15 @@
 // The GLSL face of the formulas shared with C++ (spp/slab.hpp is the other): what that text needs and GLSL lacks.
 #define SHARED_FN
+#define SHARED_IN(Type) Type
 #define Number float
 #define Length float
 #define InverseLength float
 
-// e^x - 1. The series is cut after x^8, whose successor is below 1.1e-8 of the sum for |x| < 1/2; beyond that the
-// subtraction loses at most a factor e^x / |e^x - 1| < 2.6 of exp's own relative error.
-float expm1(float x) {
-  if (abs(x) >= 0.5) return exp(x) - 1.0;
-  float series = 1.0 / 40320.0;
-  series = series * x + 1.0 / 5040.0;
-  series = series * x + 1.0 / 720.0;
-  series = series * x + 1.0 / 120.0;
-  series = series * x + 1.0 / 24.0;
-  series = series * x + 1.0 / 6.0;
-  series = series * x + 0.5;
-  series = series * x + 1.0;
-  return series * x;
+float select(bool condition, float a, float b) {
+  return condition ? a : b;
 }
+
+// (-1)^n / (n + 1)!: the series of (1 - e^-x) / x, cut where less than half a rounding is left for |x| < 1/2.
+const int kSeriesDegree = 7;
+const float kDecaySeries[8] = float[8](1.0, -1.0 / 2.0, 1.0 / 6.0, -1.0 / 24.0, 1.0 / 120.0, -1.0 / 720.0, 1.0 / 5040.0,
+                                       -1.0 / 40320.0);
