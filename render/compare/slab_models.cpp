@@ -36,6 +36,29 @@ class ExactSlab : public SlabSolution {
   int modes_ = 1;  // azimuth modes that have been used
 };
 
+// Direct light alone: all that SS knows.
+class DirectSlab : public SlabSolution {
+ public:
+  explicit DirectSlab(const SlabSetup& setup) : slab_(*setup.homogeneous) {}
+  SlabBudget budget() const override {
+    const double direct = spp::precise::directPower(slab_.thickness, slab_.mu0);
+    return {0., direct, direct, 1. - direct};
+  }
+  double incident() const override { return slab_.mu0; }
+  pp::Fluxes fluxes(double depth) const override {
+    const double direct = spp::precise::directPower(depth, slab_.mu0);
+    return {.direct = slab_.mu0 * direct, .mean_intensity = direct / (4. * std::numbers::pi)};
+  }
+  void radiances(std::span<const double>, std::span<const double>, std::span<const double>,
+                 std::span<double> result) override {
+    std::ranges::fill(result, 0.);
+  }
+  int streams() const override { return 0; }
+
+ private:
+  pp::SlabCase slab_;
+};
+
 // SPP as it is printed, without the refinement: radiance is the same for all directions of a half.
 class SimplifiedSlab : public SlabSolution {
  public:
@@ -208,6 +231,23 @@ SlabSetup homogeneousSlab(const pp::SlabCase& slab, const pp::Settings& settings
   return {.problem = {.layers = {std::move(layer)}, .beam = pp::Beam{.mu0 = slab.mu0}},
           .settings = settings,
           .homogeneous = slab};
+}
+
+std::unique_ptr<SlabSolution> closedFormSlab(const spp::SlabTier& tier, const SlabSetup& setup) {
+  switch (tier.form) {
+    case spp::SlabForm::kDirect:
+      return std::make_unique<DirectSlab>(setup);
+    case spp::SlabForm::kSpp:
+      return std::make_unique<SimplifiedSlab>(setup);
+    case spp::SlabForm::kRefinedSpp:
+      return refinedSpp(setup);
+    case spp::SlabForm::kTwoStream:
+      return twoStream(setup);
+    case spp::SlabForm::kStreams:
+      break;
+  }
+  return std::make_unique<RefinedSlab>(setup,
+                                       spp::nStreamConstants(mediumOf(setup), tier.streams, tier.azimuth_orders));
 }
 
 std::span<const SlabModel> slabModels() {

@@ -9,6 +9,7 @@
 #include "pp_solver/slab_batch.hpp"
 #include "pp_solver/solver.hpp"
 #include "render/reference/forward_trace.hpp"
+#include "spp/slab_tiers.hpp"
 
 namespace sunfleck {
 
@@ -54,6 +55,9 @@ struct SlabModel {
   bool is_sample;          // Monte Carlo: answers have standard errors, and mean intensity is not among them
   std::unique_ptr<SlabSolution> (*solve)(const SlabSetup& setup);
 };
+
+// A tier's answer in double precision; needs SlabSetup::homogeneous.
+std::unique_ptr<SlabSolution> closedFormSlab(const spp::SlabTier& tier, const SlabSetup& setup);
 
 // The exact solver first.
 std::span<const SlabModel> slabModels();

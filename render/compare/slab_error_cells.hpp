@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "core/progress.hpp"
+#include "render/compare/slab_tier_errors.hpp"
+#include "spp/tier_choice.hpp"
+
+namespace sunfleck {
+
+// The promise is this times the largest error measured in a cell, rounded up to the map's next step.
+inline constexpr double kPromiseMargin = 1.25;
+
+// (S14) Measures the map: in every cell, the errors at all its corners and at its middle. On all threads.
+spp::SlabErrorMap measuredParticleErrors(const Progress& progress = {});
+
+// Random places on the map, spread evenly over its cells, and the errors there, by a finer exact solution.
+struct CheckedPlace {
+  spp::SlabPlace place;
+  std::vector<TierErrors> errors;  // of each tier
+};
+std::vector<CheckedPlace> checkedPlaces(int count, unsigned seed, const Progress& progress = {});
+
+}  // namespace sunfleck

@@ -1,0 +1,140 @@
+#include "spp/slab_error_map.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace sunfleck::spp {
+namespace {
+
+// Where each tier's bytes stand, and the tiers by cost.
+struct Layout {
+  std::vector<std::array<std::size_t, kSlabQuantities>> columns;
+  std::size_t count = 0;
+  std::vector<const SlabTier*> by_power_cost, by_radiance_cost;
+
+  Layout() {
+    const std::span<const SlabTier> tiers = slabTiers();
+    for (std::size_t i = 0; i < tiers.size(); ++i) {
+      const auto powers = static_cast<std::size_t>(tiers[i].powers);
+      if (powers == i) {
+        columns.push_back({count, count + 1, 0});
+        count += 2;
+        by_power_cost.push_back(&tiers[i]);
+      } else {
+        columns.push_back(columns[powers]);
+      }
+      by_radiance_cost.push_back(&tiers[i]);
+    }
+    for (auto& column : columns) column[2] = count++;
+    std::ranges::stable_sort(by_power_cost, {}, &SlabTier::power_cost);
+    std::ranges::stable_sort(by_radiance_cost, {}, &SlabTier::radiance_cost);
+  }
+};
+
+const Layout& layout() {
+  static const Layout kLayout;
+  return kLayout;
+}
+
+std::size_t cellsOf(const std::vector<MapAxis>& axes) {
+  std::size_t cells = 1;
+  for (const MapAxis& axis : axes) cells *= static_cast<std::size_t>(axis.cells());
+  return cells;
+}
+
+}  // namespace
+
+std::uint8_t SlabErrorMap::code(double error) {
+  if (!(error > kLeastError)) return std::isnan(error) ? kNoPromise : 0;
+  const double step = std::ceil(kStepsPerDecade * std::log10(error / kLeastError));
+  return step < kNoPromise ? static_cast<std::uint8_t>(step) : kNoPromise;
+}
+
+double SlabErrorMap::error(std::uint8_t code) {
+  return code == kNoPromise ? std::numeric_limits<double>::infinity()
+                            : kLeastError * std::pow(10., static_cast<double>(code) / kStepsPerDecade);
+}
+
+std::size_t SlabErrorMap::columns() {
+  return layout().count;
+}
+
+std::size_t SlabErrorMap::column(const SlabTier& tier, SlabQuantity quantity) {
+  return layout().columns[static_cast<std::size_t>(&tier - slabTiers().data())][static_cast<std::size_t>(quantity)];
+}
+
+SlabErrorMap::SlabErrorMap(std::vector<MapAxis> axes, std::vector<std::uint8_t> codes)
+    : axes_(std::move(axes)), codes_(std::move(codes)) {
+  if (codes_.size() != cellsOf(axes_) * columns()) throw std::logic_error("slab errors: not one byte for each cell");
+}
+
+std::string SlabErrorMap::header() const {
+  std::string text = "sunfleck slab errors 1";
+  for (const MapAxis& axis : axes_) text += "; " + axis.text();
+  for (const SlabTier& tier : slabTiers()) text += (&tier == slabTiers().data() ? "; " : " ") + std::string(tier.name);
+  return text + "\n";
+}
+
+// Column by column, each byte as its difference from the cell before: runs of small numbers, which zlib packs well.
+std::string SlabErrorMap::file() const {
+  const std::size_t cells = cellsOf(axes_), width = columns();
+  std::vector<Bytef> differences;
+  for (std::size_t c = 0; c < width; ++c)
+    for (std::size_t i = 0; i < cells; ++i)
+      differences.push_back(
+          static_cast<Bytef>(codes_[i * width + c] - (i > 0 ? codes_[(i - 1) * width + c] : std::uint8_t{0})));
+  uLongf size = compressBound(static_cast<uLong>(differences.size()));
+  std::vector<Bytef> packed(size);
+  if (compress2(packed.data(), &size, differences.data(), static_cast<uLong>(differences.size()), 9) != Z_OK)
+    throw std::runtime_error("slab errors: could not be packed");
+  return header() + std::string(packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
+}
+
+SlabErrorMap::SlabErrorMap(std::vector<MapAxis> axes, std::string_view file) : axes_(std::move(axes)) {
+  if (!file.starts_with(header())) throw std::runtime_error("slab errors: made for other axes or tiers");
+  file.remove_prefix(header().size());
+  const std::size_t cells = cellsOf(axes_), width = columns();
+  std::vector<Bytef> differences(cells * width);
+  uLongf size = static_cast<uLongf>(differences.size());
+  if (uncompress(differences.data(), &size, reinterpret_cast<const Bytef*>(file.data()),
+                 static_cast<uLong>(file.size())) != Z_OK ||
+      size != differences.size())
+    throw std::runtime_error("slab errors: cut short or damaged");
+  codes_.resize(differences.size());
+  for (std::size_t c = 0; c < width; ++c) {
+    std::uint8_t code = 0;
+    for (std::size_t i = 0; i < cells; ++i)
+      codes_[i * width + c] = code = static_cast<std::uint8_t>(code + differences[c * cells + i]);
+  }
+}
+
+std::span<const std::uint8_t> SlabErrorMap::at(std::span<const double> coordinates) const {
+  std::size_t cell = 0;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const int along = axes_[i].cell(coordinates[i]);
+    if (along < 0) return {};
+    cell = cell * static_cast<std::size_t>(axes_[i].cells()) + static_cast<std::size_t>(along);
+  }
+  return {codes_.data() + cell * columns(), columns()};
+}
+
+const SlabTier* cheapestTier(std::span<const std::uint8_t> cell, std::span<const SlabQuantity> quantities,
+                             double max_error) {
+  if (cell.empty() || !(max_error >= SlabErrorMap::kLeastError)) return nullptr;
+  const double steps = SlabErrorMap::kStepsPerDecade * std::log10(max_error / SlabErrorMap::kLeastError);
+  const auto most = static_cast<std::uint8_t>(std::min(std::floor(steps + 1e-9), SlabErrorMap::kNoPromise - 1.));
+  const auto keeps = [&](const SlabTier* tier) {
+    return std::ranges::all_of(
+        quantities, [&](SlabQuantity quantity) { return cell[SlabErrorMap::column(*tier, quantity)] <= most; });
+  };
+  const bool radiance = std::ranges::find(quantities, SlabQuantity::kRadiance) != quantities.end();
+  const auto& tiers = radiance ? layout().by_radiance_cost : layout().by_power_cost;
+  const auto found = std::ranges::find_if(tiers, keeps);
+  return found == tiers.end() ? nullptr : *found;
+}
+
+}  // namespace sunfleck::spp

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace sunfleck::spp {
+
+enum class SlabForm { kDirect, kSpp, kRefinedSpp, kTwoStream, kStreams };
+
+// A closed form of the light in a slab, as one may choose among them.
+struct SlabTier {
+  std::string_view name;  // nstream:N:ORDERS for n streams
+  SlabForm form;
+  int streams, azimuth_orders;  // n of each half and orders of its radiance's azimuth, of SlabForm::kStreams
+  // Measured time of P+, P- and fluxes at one depth, and of radiance there in one direction, over that of SPP's powers:
+  // thickness and depth are new each time, what depends on medium and beam alone is at hand.
+  float power_cost, radiance_cost;
+  int powers;  // index of the first tier with the same powers and fluxes
+};
+
+// From direct light alone to eight streams of each half.
+std::span<const SlabTier> slabTiers();
+
+}  // namespace sunfleck::spp
