@@ -10,11 +10,10 @@
 namespace sunfleck::spp {
 namespace {
 
-// Where each tier's bytes stand, and the tiers by cost.
+// Where each tier's bytes stand.
 struct Layout {
   std::vector<std::array<std::size_t, kSlabQuantities>> columns;
   std::size_t count = 0;
-  std::vector<const SlabTier*> by_power_cost, by_radiance_cost;
 
   Layout() {
     const std::span<const SlabTier> tiers = slabTiers();
@@ -23,15 +22,11 @@ struct Layout {
       if (powers == i) {
         columns.push_back({count, count + 1, 0});
         count += 2;
-        by_power_cost.push_back(&tiers[i]);
       } else {
         columns.push_back(columns[powers]);
       }
-      by_radiance_cost.push_back(&tiers[i]);
     }
     for (auto& column : columns) column[2] = count++;
-    std::ranges::stable_sort(by_power_cost, {}, &SlabTier::power_cost);
-    std::ranges::stable_sort(by_radiance_cost, {}, &SlabTier::radiance_cost);
   }
 };
 
@@ -132,7 +127,7 @@ const SlabTier* cheapestTier(std::span<const std::uint8_t> cell, std::span<const
         quantities, [&](SlabQuantity quantity) { return cell[SlabErrorMap::column(*tier, quantity)] <= most; });
   };
   const bool radiance = std::ranges::find(quantities, SlabQuantity::kRadiance) != quantities.end();
-  const auto& tiers = radiance ? layout().by_radiance_cost : layout().by_power_cost;
+  const std::span<const SlabTier* const> tiers = tiersByCost(radiance);
   const auto found = std::ranges::find_if(tiers, keeps);
   return found == tiers.end() ? nullptr : *found;
 }

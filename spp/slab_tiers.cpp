@@ -1,6 +1,8 @@
 #include "spp/slab_tiers.hpp"
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 namespace sunfleck::spp {
 namespace {
@@ -25,7 +27,7 @@ constexpr SlabTier oneStream(std::string_view name, SlabForm form, float power_c
           .powers = powers};
 }
 
-constexpr std::array kTiers{
+constexpr std::array<SlabTier, kSlabTiers> kTiers{
     oneStream("ss", SlabForm::kDirect, 0.3F, 0.3F, 0),     oneStream("spp", SlabForm::kSpp, 1.F, 1.F, 1),
     oneStream("sppr", SlabForm::kRefinedSpp, 1.F, 9.F, 1), oneStream("twostream", SlabForm::kTwoStream, 2.4F, 9.1F, 3),
     streams("nstream:1:1", 1, 1, 2.5F, 9.2F, 4),           streams("nstream:1:2", 1, 2, 2.5F, 16.F, 4),
@@ -37,10 +39,23 @@ constexpr std::array kTiers{
     streams("nstream:8:2", 8, 2, 40.F, 200.F, 15),         streams("nstream:8:16", 8, 16, 40.F, 1500.F, 15),
 };
 
+std::vector<const SlabTier*> sorted(bool radiance) {
+  std::vector<const SlabTier*> tiers;
+  for (const SlabTier& tier : kTiers)
+    if (radiance || &tier == &kTiers[static_cast<std::size_t>(tier.powers)]) tiers.push_back(&tier);
+  std::ranges::stable_sort(tiers, {}, radiance ? &SlabTier::radiance_cost : &SlabTier::power_cost);
+  return tiers;
+}
+
 }  // namespace
 
-std::span<const SlabTier> slabTiers() {
+std::span<const SlabTier, kSlabTiers> slabTiers() {
   return kTiers;
+}
+
+std::span<const SlabTier* const> tiersByCost(bool radiance) {
+  static const std::array kSorted{sorted(false), sorted(true)};
+  return kSorted[radiance ? 1 : 0];
 }
 
 }  // namespace sunfleck::spp

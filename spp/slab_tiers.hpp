@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string_view>
 
@@ -19,6 +20,11 @@ struct SlabTier {
 };
 
 // From direct light alone to eight streams of each half.
-std::span<const SlabTier> slabTiers();
+inline constexpr std::size_t kSlabTiers = 18;
+std::span<const SlabTier, kSlabTiers> slabTiers();
+
+// Those worth asking for powers or for radiance, by its cost: the cheapest first. Of tiers with the same powers the
+// first alone is worth asking for powers.
+std::span<const SlabTier* const> tiersByCost(bool radiance);
 
 }  // namespace sunfleck::spp

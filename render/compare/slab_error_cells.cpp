@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
 
 #include "core/random.hpp"
@@ -69,13 +70,12 @@ class Cells {
     largest_.assign(cells * spp::SlabErrorMap::columns(), 0.);
     for (auto make : {corners, middles}) {
       const auto of = [&](Axis axis) { return make(axes_[axis], axis); };
+      const auto depths = std::make_shared<const std::vector<Sample>>(of(kDepth));
       for (const Sample& lost : of(kLost))
         for (const Sample& asymmetry : of(kAsymmetry))
           for (const Sample& thickness : of(kThickness))
-            for (const Sample& mu0 : of(kMu0)) slabs_.push_back({lost, asymmetry, thickness, mu0});
+            for (const Sample& mu0 : of(kMu0)) slabs_.push_back({lost, asymmetry, thickness, mu0, depths});
     }
-    depths_ = corners(axes_[kDepth], kDepth);
-    for (Sample& middle : middles(axes_[kDepth], kDepth)) depths_.push_back(std::move(middle));
   }
 
   std::size_t slabs() const { return slabs_.size(); }
@@ -88,7 +88,7 @@ class Cells {
                              .mu0 = slab.mu0.value};
     std::vector<const Sample*> samples;
     std::vector<double> depths;
-    for (const Sample& sample : depths_) {
+    for (const Sample& sample : *slab.depths) {
       if (std::isinf(given.thickness) && sample.value > 0.5) continue;
       samples.push_back(&sample);
       depths.push_back(
@@ -113,6 +113,7 @@ class Cells {
  private:
   struct Slab {
     Sample lost, asymmetry, thickness, mu0;
+    std::shared_ptr<const std::vector<Sample>> depths;
   };
 
   void add(std::array<int, kAxes> at, std::span<const TierErrors> errors) {
@@ -130,7 +131,6 @@ class Cells {
   std::vector<MapAxis> axes_;
   std::span<const spp::SlabTier> tiers_ = spp::slabTiers();
   std::vector<Slab> slabs_;
-  std::vector<Sample> depths_;
   std::vector<double> largest_;
   std::mutex adding_;
 };
