@@ -26,7 +26,7 @@ inline constexpr double kDimIrradiance = 1e-3;  // of 1 that falls on a plane fa
 class SlabErrorMap {
  public:
   // A byte b promises an error of at most kLeastError 10^(b / kStepsPerDecade), kNoPromise none.
-  static constexpr double kLeastError = 1e-5;
+  static constexpr double kLeastError = 1e-4;
   static constexpr int kStepsPerDecade = 8;
   static constexpr std::uint8_t kNoPromise = 255;
   static std::uint8_t code(double error);  // rounded up

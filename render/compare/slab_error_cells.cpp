@@ -19,7 +19,9 @@ using spp::MapAxis;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kThin = 1e-3;    // stands for thickness 0: errors go to 0 there
 constexpr double kThick = 1000.;  // stands for the thickest finite slabs
-constexpr double kDeep = 0.49;    // relative depth that stands for the bottomless rest of a half space
+constexpr int kMorePlaces = 12;   // in each cell, for powers alone, which take a hundredth of the time
+constexpr int kMoreDepths = 8;
+constexpr double kDeep = 0.49;  // relative depth that stands for the bottomless rest of a half space
 
 enum Axis : std::size_t { kLost, kAsymmetry, kThickness, kDepth, kMu0, kAxes };
 
@@ -57,6 +59,17 @@ std::vector<Sample> middles(const MapAxis& axis, std::size_t which) {
   return samples;
 }
 
+// Depths within each cell, evenly spread.
+std::vector<Sample> manyWithin(const MapAxis& axis, std::size_t which) {
+  std::vector<Sample> samples;
+  for (int cell = 0; cell < axis.cells(); ++cell) {
+    const bool edge = axis.range(cell)[0] == axis.range(cell)[1];
+    for (int i = 0; i < (edge ? 1 : kMoreDepths); ++i)
+      samples.push_back({within(axis, which, cell, (i + 0.5) / kMoreDepths), {cell}});
+  }
+  return samples;
+}
+
 TierErrorSettings settingsFor(double asymmetry) {
   if (std::abs(asymmetry) < 0.6) return {.streams = 32, .cosines = 6, .azimuths = 6};
   return {.streams = 40, .cosines = 8, .azimuths = 8};
@@ -74,8 +87,9 @@ class Cells {
       for (const Sample& lost : of(kLost))
         for (const Sample& asymmetry : of(kAsymmetry))
           for (const Sample& thickness : of(kThickness))
-            for (const Sample& mu0 : of(kMu0)) slabs_.push_back({lost, asymmetry, thickness, mu0, depths});
+            for (const Sample& mu0 : of(kMu0)) slabs_.push_back({lost, asymmetry, thickness, mu0, depths, true});
     }
+    addRandom();
   }
 
   std::size_t slabs() const { return slabs_.size(); }
@@ -94,7 +108,9 @@ class Cells {
       depths.push_back(
           spp::depthAt(std::isinf(given.thickness) ? std::min(sample.value, kDeep) : sample.value, given.thickness));
     }
-    const std::vector<TierErrors> errors = slabTierErrors(given, depths, settingsFor(given.asymmetry));
+    TierErrorSettings settings = settingsFor(given.asymmetry);
+    if (!slab.radiance) settings.cosines = 0;
+    const std::vector<TierErrors> errors = slabTierErrors(given, depths, settings);
     const std::scoped_lock lock(adding_);
     for (std::size_t d = 0; d < samples.size(); ++d)
       for (const int a : slab.lost.cells)
@@ -114,7 +130,23 @@ class Cells {
   struct Slab {
     Sample lost, asymmetry, thickness, mu0;
     std::shared_ptr<const std::vector<Sample>> depths;
+    bool radiance;  // is measured too
   };
+
+  // Powers at random places within each cell.
+  void addRandom() {
+    const auto depths = std::make_shared<const std::vector<Sample>>(manyWithin(axes_[kDepth], kDepth));
+    Random random(1, 0);
+    const auto in = [&](Axis axis, int cell) {
+      return Sample{within(axes_[axis], axis, cell, random.uniformDouble()), {cell}};
+    };
+    for (int a = 0; a < axes_[kLost].cells(); ++a)
+      for (int b = 0; b < axes_[kAsymmetry].cells(); ++b)
+        for (int c = 0; c < axes_[kThickness].cells(); ++c)
+          for (int e = 0; e < axes_[kMu0].cells(); ++e)
+            for (int i = 0; i < kMorePlaces; ++i)
+              slabs_.push_back({in(kLost, a), in(kAsymmetry, b), in(kThickness, c), in(kMu0, e), depths, false});
+  }
 
   void add(std::array<int, kAxes> at, std::span<const TierErrors> errors) {
     std::size_t cell = 0;

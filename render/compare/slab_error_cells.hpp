@@ -9,9 +9,10 @@
 namespace sunfleck {
 
 // The promise is this times the largest error measured in a cell, rounded up to the map's next step.
-inline constexpr double kPromiseMargin = 1.25;
+inline constexpr double kPromiseMargin = 1.5;
 
-// (S14) Measures the map: in every cell, the errors at all its corners and at its middle. On all threads.
+// (S14) Measures the map: in every cell, the errors at all its corners and in its middle, and those of powers also at
+// random places and more depths. On all threads.
 spp::SlabErrorMap measuredParticleErrors(const Progress& progress = {});
 
 // Random places on the map, spread evenly over its cells, and the errors there, by a finer exact solution.

@@ -17,6 +17,7 @@ struct Directions {
 
   // Radiance does not depend on the azimuth where the phase function or the beam has none.
   Directions(const pp::SlabCase& slab, const TierErrorSettings& settings) {
+    if (settings.cosines == 0) return;
     const DoubleGauss rule = doubleGauss(2 * settings.cosines);
     for (std::size_t i = 0; i < rule.mu.size(); ++i)
       for (const double half : {1., -1.}) {
@@ -35,12 +36,13 @@ struct Light {
   Light(SlabSolution& slab, std::span<const double> depths, const Directions& directions)
       : radiances(depths.size() * directions.mus.size() * directions.phis.size()) {
     for (const double depth : depths) fluxes.push_back(slab.fluxes(depth));
-    slab.radiances(depths, directions.mus, directions.phis, radiances);
+    if (!radiances.empty()) slab.radiances(depths, directions.mus, directions.phis, radiances);
   }
 };
 
 double radianceError(const Light& light, const Light& exact, std::size_t depth, const Directions& directions) {
   const std::size_t azimuths = directions.phis.size(), count = directions.mus.size() * azimuths;
+  if (count == 0) return 0.;
   double sum = 0.;
   for (std::size_t k = 0; k < count; ++k) {
     const double deviation = light.radiances[depth * count + k] - exact.radiances[depth * count + k];
@@ -59,6 +61,11 @@ std::vector<TierErrors> slabTierErrors(const pp::SlabCase& slab, std::span<const
   const std::span<const spp::SlabTier> tiers = spp::slabTiers();
   std::vector<TierErrors> errors(depths.size() * tiers.size());
   for (std::size_t t = 0; t < tiers.size(); ++t) {
+    const auto powers = static_cast<std::size_t>(tiers[t].powers);
+    if (settings.cosines == 0 && powers != t) {
+      for (std::size_t d = 0; d < depths.size(); ++d) errors[d * tiers.size() + t] = errors[d * tiers.size() + powers];
+      continue;
+    }
     const Light light(*closedFormSlab(tiers[t], setup), depths, directions);
     for (std::size_t d = 0; d < depths.size(); ++d) {
       const pp::Fluxes &a = light.fluxes[d], &b = exact.fluxes[d];

@@ -12,7 +12,7 @@ namespace sunfleck {
 // The exact solution's streams, and the directions over which the RMS of radiance is taken.
 struct TierErrorSettings {
   int streams = 32;
-  int cosines = 8;   // of Gauss's rule in each half
+  int cosines = 8;   // of Gauss's rule in each half; 0: the error of radiance is not measured, but told as 0
   int azimuths = 8;  // midpoints of the half circle
 };
 
