@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -85,7 +86,7 @@ TEST(S14_CheapestTier, IsTheCheapestThatKeepsTheError) {
   EXPECT_EQ(name(spp::cheapestTier(first, kAll, 0.01)), "nstream:2:1");
   EXPECT_EQ(name(spp::cheapestTier(first, kAll, 0.001)), "none");
   EXPECT_EQ(name(spp::cheapestTier(second, kAll, 0.5)), "none");
-  EXPECT_EQ(name(spp::cheapestTier({}, kAll, 0.5)), "none");
+  EXPECT_EQ(name(spp::cheapestTier(map.at(std::array{3.}), kAll, 0.5)), "none");
   for (const bool radiance : {false, true}) {
     float last = 0.F;
     for (const spp::SlabTier* tier : spp::tiersByCost(radiance)) {
