@@ -87,7 +87,8 @@ Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer, bool is_samp
 }
 
 std::string percent(double error) {
-  return std::isinf(error) ? "not known" : fmt::format("{:.2g} %", 100. * error);
+  if (std::isinf(error)) return "not known";
+  return error < 0.995 ? fmt::format("{:.2g} %", 100. * error) : fmt::format("{:.0f} %", 100. * error);
 }
 
 std::string choiceText(const SlabQuestion& question, const SlabChoice& choice, double max_error) {

@@ -74,14 +74,16 @@ std::string SlabErrorMap::header() const {
   return text + "\n";
 }
 
-// Column by column, each byte as its difference from the cell before: runs of small numbers, which zlib packs well.
+// Column by column, each byte as its difference from the cell before along the first axis: runs of small numbers, which
+// zlib packs well.
 std::string SlabErrorMap::file() const {
-  const std::size_t cells = cellsOf(axes_), width = columns();
+  const std::size_t cells = cellsOf(axes_), width = columns(),
+                    before = cells / static_cast<std::size_t>(axes_[0].cells());
   std::vector<Bytef> differences;
   for (std::size_t c = 0; c < width; ++c)
     for (std::size_t i = 0; i < cells; ++i)
       differences.push_back(
-          static_cast<Bytef>(codes_[i * width + c] - (i > 0 ? codes_[(i - 1) * width + c] : std::uint8_t{0})));
+          static_cast<Bytef>(codes_[i * width + c] - (i >= before ? codes_[(i - before) * width + c] : 0)));
   uLongf size = compressBound(static_cast<uLong>(differences.size()));
   std::vector<Bytef> packed(size);
   if (compress2(packed.data(), &size, differences.data(), static_cast<uLong>(differences.size()), 9) != Z_OK)
@@ -92,7 +94,8 @@ std::string SlabErrorMap::file() const {
 SlabErrorMap::SlabErrorMap(std::vector<MapAxis> axes, std::string_view file) : axes_(std::move(axes)) {
   if (!file.starts_with(header())) throw std::runtime_error("slab errors: made for other axes or tiers");
   file.remove_prefix(header().size());
-  const std::size_t cells = cellsOf(axes_), width = columns();
+  const std::size_t cells = cellsOf(axes_), width = columns(),
+                    before = cells / static_cast<std::size_t>(axes_[0].cells());
   std::vector<Bytef> differences(cells * width);
   uLongf size = static_cast<uLongf>(differences.size());
   if (uncompress(differences.data(), &size, reinterpret_cast<const Bytef*>(file.data()),
@@ -100,11 +103,10 @@ SlabErrorMap::SlabErrorMap(std::vector<MapAxis> axes, std::string_view file) : a
       size != differences.size())
     throw std::runtime_error("slab errors: cut short or damaged");
   codes_.resize(differences.size());
-  for (std::size_t c = 0; c < width; ++c) {
-    std::uint8_t code = 0;
+  for (std::size_t c = 0; c < width; ++c)
     for (std::size_t i = 0; i < cells; ++i)
-      codes_[i * width + c] = code = static_cast<std::uint8_t>(code + differences[c * cells + i]);
-  }
+      codes_[i * width + c] =
+          static_cast<std::uint8_t>(differences[c * cells + i] + (i >= before ? codes_[(i - before) * width + c] : 0));
 }
 
 std::span<const std::uint8_t> SlabErrorMap::at(std::span<const double> coordinates) const {

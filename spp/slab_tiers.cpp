@@ -7,7 +7,7 @@
 namespace sunfleck::spp {
 namespace {
 
-constexpr SlabTier streams(std::string_view name, int n, int orders, float power_cost, float radiance_cost,
+constexpr SlabTier streams(std::string_view name, int n, int orders, double power_cost, double radiance_cost,
                            int powers) {
   return {.name = name,
           .form = SlabForm::kStreams,
@@ -17,7 +17,8 @@ constexpr SlabTier streams(std::string_view name, int n, int orders, float power
           .radiance_cost = radiance_cost,
           .powers = powers};
 }
-constexpr SlabTier oneStream(std::string_view name, SlabForm form, float power_cost, float radiance_cost, int powers) {
+constexpr SlabTier oneStream(std::string_view name, SlabForm form, double power_cost, double radiance_cost,
+                             int powers) {
   return {.name = name,
           .form = form,
           .streams = 1,
@@ -28,15 +29,15 @@ constexpr SlabTier oneStream(std::string_view name, SlabForm form, float power_c
 }
 
 constexpr std::array<SlabTier, kSlabTiers> kTiers{
-    oneStream("ss", SlabForm::kDirect, 0.3F, 0.3F, 0),     oneStream("spp", SlabForm::kSpp, 1.F, 1.F, 1),
-    oneStream("sppr", SlabForm::kRefinedSpp, 1.F, 9.F, 1), oneStream("twostream", SlabForm::kTwoStream, 2.4F, 9.1F, 3),
-    streams("nstream:1:1", 1, 1, 2.5F, 9.2F, 4),           streams("nstream:1:2", 1, 2, 2.5F, 16.F, 4),
-    streams("nstream:2:1", 2, 1, 4.8F, 18.F, 6),           streams("nstream:2:2", 2, 2, 4.8F, 32.F, 6),
-    streams("nstream:2:4", 2, 4, 4.8F, 60.F, 6),           streams("nstream:3:1", 3, 1, 7.9F, 28.F, 9),
-    streams("nstream:3:2", 3, 2, 7.9F, 50.F, 9),           streams("nstream:3:6", 3, 6, 7.9F, 140.F, 9),
-    streams("nstream:4:1", 4, 1, 11.7F, 40.F, 12),         streams("nstream:4:2", 4, 2, 11.7F, 72.F, 12),
-    streams("nstream:4:8", 4, 8, 11.7F, 270.F, 12),        streams("nstream:8:1", 8, 1, 40.F, 110.F, 15),
-    streams("nstream:8:2", 8, 2, 40.F, 200.F, 15),         streams("nstream:8:16", 8, 16, 40.F, 1500.F, 15),
+    oneStream("ss", SlabForm::kDirect, 0.3, 0.3, 0),     oneStream("spp", SlabForm::kSpp, 1., 1., 1),
+    oneStream("sppr", SlabForm::kRefinedSpp, 1., 9., 1), oneStream("twostream", SlabForm::kTwoStream, 2.4, 9.1, 3),
+    streams("nstream:1:1", 1, 1, 2.5, 9.2, 4),           streams("nstream:1:2", 1, 2, 2.5, 16., 4),
+    streams("nstream:2:1", 2, 1, 4.8, 18., 6),           streams("nstream:2:2", 2, 2, 4.8, 32., 6),
+    streams("nstream:2:4", 2, 4, 4.8, 60., 6),           streams("nstream:3:1", 3, 1, 7.9, 28., 9),
+    streams("nstream:3:2", 3, 2, 7.9, 50., 9),           streams("nstream:3:6", 3, 6, 7.9, 140., 9),
+    streams("nstream:4:1", 4, 1, 11.7, 40., 12),         streams("nstream:4:2", 4, 2, 11.7, 72., 12),
+    streams("nstream:4:8", 4, 8, 11.7, 270., 12),        streams("nstream:8:1", 8, 1, 40., 110., 15),
+    streams("nstream:8:2", 8, 2, 40., 200., 15),         streams("nstream:8:16", 8, 16, 40., 1500., 15),
 };
 
 std::vector<const SlabTier*> sorted(bool radiance) {

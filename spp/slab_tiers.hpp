@@ -15,7 +15,7 @@ struct SlabTier {
   int streams, azimuth_orders;  // n of each half and orders of its radiance's azimuth, of SlabForm::kStreams
   // Measured time of P+, P- and fluxes at one depth, and of radiance there in one direction, over that of SPP's powers:
   // thickness and depth are new each time, what depends on medium and beam alone is at hand.
-  float power_cost, radiance_cost;
+  double power_cost, radiance_cost;
   int powers;  // index of the first tier with the same powers and fluxes
 };
 

@@ -88,7 +88,7 @@ TEST(S14_CheapestTier, IsTheCheapestThatKeepsTheError) {
   EXPECT_EQ(name(spp::cheapestTier(second, kAll, 0.5)), "none");
   EXPECT_EQ(name(spp::cheapestTier(map.at(std::array{3.}), kAll, 0.5)), "none");
   for (const bool radiance : {false, true}) {
-    float last = 0.F;
+    double last = 0.;
     for (const spp::SlabTier* tier : spp::tiersByCost(radiance)) {
       EXPECT_GE(radiance ? tier->radiance_cost : tier->power_cost, last) << tier->name;
       last = radiance ? tier->radiance_cost : tier->power_cost;

@@ -81,7 +81,7 @@ void solveExactly(double max_error, std::vector<pp::SlabCase> cases, const std::
     pp::solveSlabs(cases, fine, streams);
     std::size_t left = 0;
     for (std::size_t i = 0; i < cases.size(); ++i) {
-      if (difference(coarse[i], fine[i]) < max_error) {
+      if (difference(coarse[i], fine[i]) < 0.5 * max_error) {
         result[at[i]] = {coarse[i], fmt::format("pp:{}", streams / 2)};
       } else if (streams == 256) {
         result[at[i]] = {fine[i], "pp:256"};

@@ -22,6 +22,7 @@ struct SlabChoice {
   std::optional<std::size_t> chosen;  // of the promises; none: the exact solver
   std::string reason;                 // why the exact solver
   const SlabModel* model;             // that is to answer
+
   const TierPromise* promise() const { return chosen ? &promises[*chosen] : nullptr; }
 };
 
@@ -36,7 +37,7 @@ struct ChosenFluxes {
   std::string model;  // a tier's name, or pp:N
 };
 // Each by the cheapest closed form that keeps max_error of both, or by the exact solver with the smallest N of 4, 8 ...
-// 256 whose result is nearer than that to the next one's. Assumes valid cases.
+// 256 whose result is nearer than half of that to the next one's. Assumes valid cases.
 std::vector<ChosenFluxes> fluxesWithin(double max_error, std::span<const pp::SlabCase> cases);
 
 }  // namespace sunfleck

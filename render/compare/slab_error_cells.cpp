@@ -122,7 +122,7 @@ class Cells {
 
   spp::SlabErrorMap map() const {
     std::vector<std::uint8_t> codes;
-    for (const double error : largest_) codes.push_back(spp::SlabErrorMap::code(kPromiseMargin * error));
+    for (const double error : largest_) codes.push_back(spp::SlabErrorMap::code(error));
     return {axes_, std::move(codes)};
   }
 
@@ -156,7 +156,8 @@ class Cells {
       for (std::size_t q = 0; q < spp::kSlabQuantities; ++q) {
         double& largest = largest_[cell * spp::SlabErrorMap::columns() +
                                    spp::SlabErrorMap::column(tiers_[t], static_cast<spp::SlabQuantity>(q))];
-        largest = std::max(largest, errors[t][q]);
+        const bool radiance = static_cast<spp::SlabQuantity>(q) == spp::SlabQuantity::kRadiance;
+        largest = std::max(largest, (radiance ? kRadianceMargin : kPowerMargin) * errors[t][q]);
       }
   }
 

@@ -8,8 +8,9 @@
 
 namespace sunfleck {
 
-// The promise is this times the largest error measured in a cell, rounded up to the map's next step.
-inline constexpr double kPromiseMargin = 1.5;
+// The promise is this times the largest error measured in a cell, rounded up to the map's next step. Radiance is
+// measured at fewer places.
+inline constexpr double kPowerMargin = 1.5, kRadianceMargin = 2.;
 
 // (S14) Measures the map: in every cell, the errors at all its corners and in its middle, and those of powers also at
 // random places and more depths. On all threads.
