@@ -13,8 +13,9 @@ struct SlabTier {
   std::string_view name;  // nstream:N:ORDERS for n streams
   SlabForm form;
   int streams, azimuth_orders;  // n of each half and orders of its radiance's azimuth, of SlabForm::kStreams
-  // Measured time of P+, P- and fluxes at one depth, and of radiance there in one direction, over that of SPP's powers:
-  // thickness and depth are new each time, what depends on medium and beam alone is at hand.
+  // Time of P+, P- and fluxes at one depth, and of radiance there in one direction, over that of SPP's powers: rounded
+  // from measurements in single precision over arrays, thickness and depth new each time, what depends on medium and
+  // beam alone at hand. The order is what matters; `sunfleck bench slab` measures it.
   double power_cost, radiance_cost;
   int powers;  // index of the first tier with the same powers and fluxes
 };
