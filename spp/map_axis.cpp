@@ -12,8 +12,8 @@ MapAxis::MapAxis(std::string name, std::vector<double> edges, const std::vector<
 
 int MapAxis::cell(double value) const {
   if (!(value >= edges_.front() && value <= edges_.back())) return -1;
-  const auto above = std::upper_bound(edges_.begin(), edges_.end(), value);
-  const auto edge = static_cast<std::size_t>(above - edges_.begin()) - 1;
+  std::size_t edge = 0;  // of a dozen edges all are compared: no branch to be guessed
+  for (std::size_t i = 1; i < edges_.size(); ++i) edge += value >= edges_[i] ? 1 : 0;
   if (own_[edge] >= 0 && value == edges_[edge]) return own_[edge];
   return static_cast<int>(std::min(edge, edges_.size() - 2));
 }

@@ -10,9 +10,16 @@
 namespace sunfleck::spp {
 namespace {
 
-// Where each tier's bytes stand.
+using Columns = std::array<std::size_t, kSlabQuantities>;
+
+// Where each tier's bytes stand, and the tiers by cost of powers and of radiance.
 struct Layout {
-  std::vector<std::array<std::size_t, kSlabQuantities>> columns;
+  struct Entry {
+    const SlabTier* tier;
+    Columns columns;
+  };
+  std::vector<Columns> columns;
+  std::array<std::vector<Entry>, 2> by_cost;
   std::size_t count = 0;
 
   Layout() {
@@ -27,6 +34,9 @@ struct Layout {
       }
     }
     for (auto& column : columns) column[2] = count++;
+    for (const bool radiance : {false, true})
+      for (const SlabTier* tier : tiersByCost(radiance))
+        by_cost[radiance ? 1 : 0].push_back({tier, columns[static_cast<std::size_t>(tier - tiers.data())]});
   }
 };
 
@@ -124,14 +134,15 @@ const SlabTier* cheapestTier(std::span<const std::uint8_t> cell, std::span<const
   if (cell.empty() || !(max_error >= SlabErrorMap::kLeastError)) return nullptr;
   const double steps = SlabErrorMap::kStepsPerDecade * std::log10(max_error / SlabErrorMap::kLeastError);
   const auto most = static_cast<std::uint8_t>(std::min(std::floor(steps + 1e-9), SlabErrorMap::kNoPromise - 1.));
-  const auto keeps = [&](const SlabTier* tier) {
-    return std::ranges::all_of(
-        quantities, [&](SlabQuantity quantity) { return cell[SlabErrorMap::column(*tier, quantity)] <= most; });
-  };
-  const bool radiance = std::ranges::find(quantities, SlabQuantity::kRadiance) != quantities.end();
-  const std::span<const SlabTier* const> tiers = tiersByCost(radiance);
-  const auto found = std::ranges::find_if(tiers, keeps);
-  return found == tiers.end() ? nullptr : *found;
+  bool radiance = false;
+  for (const SlabQuantity quantity : quantities) radiance |= quantity == SlabQuantity::kRadiance;
+  for (const Layout::Entry& entry : layout().by_cost[radiance ? 1 : 0]) {
+    bool keeps = true;
+    for (const SlabQuantity quantity : quantities)
+      keeps &= cell[entry.columns[static_cast<std::size_t>(quantity)]] <= most;
+    if (keeps) return entry.tier;
+  }
+  return nullptr;
 }
 
 }  // namespace sunfleck::spp

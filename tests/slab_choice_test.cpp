@@ -114,8 +114,9 @@ TEST(S14_RelativeDepth, RunsFromFaceToFace) {
 }
 
 // Check that errors measured at random places off the map's grid are within what is promised there. A cell is measured
-// at its corners and some places within, so that a promise is no proof: at 20,000 places (map_slab_errors --check) it
-// was exceeded at SHARE of all; of these few none may be by more than the factor seen there.
+// at its corners and at some places within, so that a promise is no proof: docs/CLOSED_FORMS.md tells how often, and by
+// how much, one of thousands of places exceeds it. Of these few, one in a thousand may, and none by more than a
+// factor 2.
 TEST(S14_PromisedError, IsKeptOffTheGrid) {
   int exceeded = 0, asked = 0;
   for (const CheckedPlace& checked : checkedPlaces(25, 99))
@@ -125,11 +126,11 @@ TEST(S14_PromisedError, IsKeptOffTheGrid) {
         const double share = checked.errors[t][static_cast<std::size_t>(quantity)] / promise;
         ++asked;
         if (share > 1.) ++exceeded;
-        EXPECT_LT(share, 3.) << spp::slabTiers()[t].name << " g " << checked.place.asymmetry << " albedo "
+        EXPECT_LT(share, 2.) << spp::slabTiers()[t].name << " g " << checked.place.asymmetry << " albedo "
                              << checked.place.albedo << " thickness " << checked.place.thickness << " depth "
                              << checked.place.depth << " mu0 " << checked.place.mu0;
       }
-  EXPECT_LE(exceeded, asked / 100);
+  EXPECT_LE(exceeded, asked / 1000);
 }
 
 // Check that nothing is promised off the map: beams flatter, scattering sharper than it was measured for.
