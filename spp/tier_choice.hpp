@@ -30,8 +30,8 @@ double depthAt(double relative_depth, double thickness);
 double promisedError(const SlabTier& tier, const SlabPlace& place, SlabQuantity quantity);
 
 // The cheapest closed form that keeps max_error of all `quantities` at a place, or at every one of several; nullptr
-// where none is known to. The first call unpacks the map; the others allocate nothing and take tens of nanoseconds a
-// place.
+// where none is known to. The first call unpacks the map; the others allocate nothing and take a tenth of a
+// microsecond a place.
 const SlabTier* cheapestTier(const SlabPlace& place, std::span<const SlabQuantity> quantities, double max_error);
 const SlabTier* cheapestTier(std::span<const SlabPlace> places, std::span<const SlabQuantity> quantities,
                              double max_error);
