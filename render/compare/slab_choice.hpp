@@ -36,8 +36,8 @@ struct ChosenFluxes {
   pp::SlabFluxes fluxes;
   std::string model;  // a tier's name, or pp:N
 };
-// Each by the cheapest closed form that keeps max_error of both, or by the exact solver with the smallest N of 4, 8 ...
-// 256 whose result is nearer than half of that to the next one's. Assumes valid cases.
+// Each by the cheapest closed form that keeps max_error of both, or by the exact solver with the smallest N of 8, 16
+// ... 256 whose result is nearer than that to the one before. Assumes valid cases.
 std::vector<ChosenFluxes> fluxesWithin(double max_error, std::span<const pp::SlabCase> cases);
 
 }  // namespace sunfleck
