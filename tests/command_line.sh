@@ -291,9 +291,9 @@ cut -d, -f1-4 chosen.csv | cmp -s - many.csv || fail "slab --max-error --batch: 
 "$program" slab --max-error 1% --batch many.csv --quiet --threads 1 | cmp -s - chosen.csv ||
   fail "slab --max-error --batch: the results depend on the number of threads"
 [ "$(awk '{ rows += $2 } END { print rows }' turns.txt)" -eq 40000 ] || fail "slab --max-error --batch: rows not counted"
-grep -q "spp:" turns.txt && grep -q "pp:8:" turns.txt || fail "slab --max-error --batch: $(cat turns.txt)"
-# 1 %, and what the exact solver with N = 16 is off itself.
-"$program" slab --batch many.csv --streams 16 -o exact.csv && paste -d, exact.csv chosen.csv |
+grep -q "spp:" turns.txt && grep -q "pp:16:" turns.txt || fail "slab --max-error --batch: $(cat turns.txt)"
+# 1 %, and a little for what N = 64 is off itself in the flattest light.
+"$program" slab --batch many.csv --streams 64 -o exact.csv && paste -d, exact.csv chosen.csv |
   awk -F, 'NR > 1 { for (i = 5; i < 7; ++i) if (($i - $(i + 7)) ^ 2 > 0.011 ^ 2) exit 1 }' ||
   fail "slab --max-error --batch: an error is not kept"
 
