@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,28 +17,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string table(const std::vector<SlabBenchPoint>& points) {
-  std::string text = fmt::format("{:<10} {:>4} {:>8} {:>12} {:>13} {:>13} {:>15} {:>15}\n", "problem", "N", "delta-M",
-                                 "corrections", "flux time", "flux error", "radiance time", "radiance error");
-  for (const SlabBenchPoint& p : points)
-    text += fmt::format("{:<10} {:>4} {:>8} {:>12} {:>10.3g} us {:>13.2g} {:>12.3g} us {:>15.2g}\n", p.problem,
-                        p.settings.streams, p.settings.delta_m ? "on" : "off", p.settings.corrections ? "on" : "off",
-                        1e6 * p.flux_seconds, p.flux_error, 1e6 * p.radiance_seconds, p.radiance_error);
-  return text;
+std::string table(const SlabBench& bench) {
+  std::string text = fmt::format("{}\n\n{:<14} {:>14} {:>14} {:>12} {:>14} {:>14}\n", bench.machine, "model",
+                                 "P+, P- time", "irradiance err", "flux err", "radiance time", "radiance err");
+  for (const SlabBenchRow& row : bench.rows)
+    text +=
+        fmt::format("{:<14} {:>11.4g} us {:>14.2g} {:>12} {:>11.4g} us {:>14.2g}\n", row.model, 1e6 * row.power_seconds,
+                    row.irradiance_error, std::isnan(row.flux_error) ? "-" : fmt::format("{:.2g}", row.flux_error),
+                    1e6 * row.radiance_seconds, row.radiance_error);
+  return text +
+         "\nTimes are of one evaluation at one depth, one thread, median of rounds in which all take turns. Closed "
+         "forms: single\n"
+         "precision, the slab's constants at hand, as for a fragment. Tables: a look-up. pp:N: a solution. Errors are "
+         "over the\n"
+         "places that the plot names, against the exact solver with N = 128: of irradiance relative, RMS; of fluxes "
+         "the "
+         "largest,\n"
+         "over the flux that arrives; of radiance RMS over all directions [1/sr], for a beam of irradiance 1.\n";
 }
 
-nlohmann::ordered_json json(const std::vector<SlabBenchPoint>& points) {
+nlohmann::ordered_json json(const SlabBench& bench) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const SlabBenchPoint& p : points)
-    rows.push_back({{"problem", p.problem},
-                    {"streams", p.settings.streams},
-                    {"delta_m", p.settings.delta_m},
-                    {"corrections", p.settings.corrections},
-                    {"flux_seconds", p.flux_seconds},
-                    {"flux_error", p.flux_error},
-                    {"radiance_seconds", p.radiance_seconds},
-                    {"radiance_error", p.radiance_error}});
-  return {{"rows", std::move(rows)}};
+  for (const SlabBenchRow& row : bench.rows) {
+    rows.push_back({{"model", row.model},
+                    {"kind", row.kind},
+                    {"streams", row.streams},
+                    {"azimuth_orders", row.azimuth_orders},
+                    {"power_seconds", row.power_seconds},
+                    {"irradiance_error", row.irradiance_error},
+                    {"flux_error", nullptr},
+                    {"radiance_seconds", row.radiance_seconds},
+                    {"radiance_error", row.radiance_error}});
+    if (!std::isnan(row.flux_error)) rows.back()["flux_error"] = row.flux_error;
+  }
+  return {{"machine", bench.machine}, {"rows", std::move(rows)}};
 }
 
 int runBenchSlab(const std::string& folder_name, const RunOptions& run) {
@@ -45,17 +58,17 @@ int runBenchSlab(const std::string& folder_name, const RunOptions& run) {
   makeFolder(folder);
   requireWritable(folder / "slab_bench.csv");
   requireWritable(folder / "slab_bench.svg");
-  const auto points = benchSlabs(terminalProgress("measuring", run.quiet));
-  if (points.empty()) {
+  const SlabBench bench = benchSlabs(terminalProgress("measuring", run.quiet));
+  if (bench.rows.empty()) {
     fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
     return 1;
   }
-  writeWhole(folder / "slab_bench.csv", slabBenchCsv(points));
-  writeWhole(folder / "slab_bench.svg", slabBenchPlot(points));
+  writeWhole(folder / "slab_bench.csv", slabBenchCsv(bench));
+  writeWhole(folder / "slab_bench.svg", slabBenchPlot(bench));
   if (run.json)
-    fmt::print("{}\n", json(points).dump(2));
+    fmt::print("{}\n", json(bench).dump(2));
   else
-    fmt::print("{}\nwrote {} and slab_bench.svg\n", table(points), (folder / "slab_bench.csv").string());
+    fmt::print("{}\nwrote {} and slab_bench.svg\n", table(bench), (folder / "slab_bench.csv").string());
   return 0;
 }
 
@@ -71,7 +84,7 @@ void addBench(CLI::App& app, RunOptions& options, int& status) {
   const auto slab = [folder, &options, &status] { status = runBenchSlab(*folder, options); };
 
   CLI::App* of_slab =
-      addCommand(*bench, options, "slab", "The plane-parallel solver by its number of streams (default)");
+      addCommand(*bench, options, "slab", "Closed forms, tables and the exact solver of a slab (default)");
   folderOption(*of_slab, "slab_bench.csv and slab_bench.svg");
   of_slab->callback(slab);
 

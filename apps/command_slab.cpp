@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <array>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "apps/commands.hpp"
 #include "apps/slab_batch.hpp"
@@ -16,21 +19,98 @@ namespace {
 
 constexpr int kEndedEarly = 1;
 
+// What solves the lines of a file: one model, or the cheapest that keeps the error; then it counts whose turn it was.
+SolveCases solverOf(const SlabModel& model, const pp::Settings& settings) {
+  if (&model == &exactSlabModel())
+    return [settings](std::span<const pp::SlabCase> cases) {
+      std::vector<pp::SlabFluxes> fluxes(cases.size());
+      pp::solveSlabs(cases, fluxes, settings.streams, settings.delta_m);
+      std::vector<ChosenFluxes> results;
+      for (const pp::SlabFluxes& solved : fluxes) results.push_back({solved, {}});
+      return results;
+    };
+  return [&model, settings](std::span<const pp::SlabCase> cases) {
+    std::vector<ChosenFluxes> results;
+    for (const pp::SlabCase& slab : cases) {
+      const SlabBudget budget = model.solve(homogeneousSlab(slab, settings))->budget();
+      results.push_back({{budget.reflectance, budget.transmittance, budget.direct}, {}});
+    }
+    return results;
+  };
+}
+
+struct TurnCount {
+  std::mutex lock;
+  std::map<std::string, std::size_t> turns;
+};
+
+SolveCases solverWithin(double max_error, TurnCount& count) {
+  return [max_error, &count](std::span<const pp::SlabCase> cases) {
+    std::vector<ChosenFluxes> results = fluxesWithin(max_error, cases);
+    const std::scoped_lock lock(count.lock);
+    for (const ChosenFluxes& chosen : results) ++count.turns[chosen.model];
+    return results;
+  };
+}
+
 int runBatch(const SlabOptions& options, const RunOptions& run) {
+  const std::optional<double> max_error = shareOf(options.max_error);
   const std::vector<const SlabModel*> models = chosenModels(options);
   if (models.size() != 1) throw InvalidInput("--batch: must have one model");
   requireExactFor(options, models);
   if (run.json) throw InvalidInput("--json: does not go with --batch, which writes CSV");
   if (!options.output.empty()) requireWritable(options.output);
-  if (solveBatch(options.batch, *models.front(), exactSettings(options), options.output,
-                 terminalProgress("solving", run.quiet)))
-    return 0;
-  fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
-  return kEndedEarly;
+  TurnCount count;
+  const SolveCases solve =
+      max_error ? solverWithin(*max_error, count) : solverOf(*models.front(), exactSettings(options));
+  if (!solveBatch(options.batch, solve, max_error.has_value(), options.output,
+                  terminalProgress("solving", run.quiet))) {
+    fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
+    return kEndedEarly;
+  }
+  if (max_error && !run.quiet)
+    for (const auto& [model, rows] : count.turns) fmt::print(stderr, "{:>12}: {} rows\n", model, rows);
+  return 0;
+}
+
+std::string plotted(const SlabOptions& options, std::span<const SlabModel* const> models,
+                    const SlabQuestion& question) {
+  std::vector<const SlabModel*> shown;
+  for (const SlabModel* model : models)
+    if (model->gives_radiance && !model->is_sample) shown.push_back(model);
+  if (shown.empty()) throw InvalidInput("--plot: must have a model other than mc");
+  writeWhole(options.plot, slabPlot(shown, question, options.plot_log));
+  return fmt::format("\nwrote {}\n", options.plot);
+}
+
+// Radiance is asked for by a direction or a plot: a closed form that is to keep an error has to know.
+int runWithin(double max_error, const SlabOptions& options, const RunOptions& run) {
+  SlabQuestion question = slabQuestion(options);
+  if (!options.plot.empty()) {
+    requireNamed(options.plot, ".svg");
+    if (question.depths.empty()) question.depths = plotDepths(question);
+    if (question.mus.empty()) question.mus = {1., -1.};
+    if (question.phis.empty()) question.phis = {0.};
+  } else if (options.mus.empty() && options.phis.empty()) {
+    question.mus.clear();
+  }
+  const SlabChoice choice = chooseModel(question, max_error);
+  const ModelAnswer given{choice.model, choice.promise() ? answer(*choice.model, question)
+                                                         : answerWithin(0.5 * max_error, *choice.model, question)};
+  if (!choice.promise()) question.setup.settings.streams = given.answer.streams;
+  std::string text =
+      run.json ? slabJson(question, given, choice, max_error) : slabText(question, given, choice, max_error);
+  if (!options.plot.empty()) {
+    const std::string wrote = plotted(options, std::array{choice.model}, question);
+    if (!run.json) text += wrote;
+  }
+  fmt::print("{}", text);
+  return 0;
 }
 
 int runSlab(const SlabOptions& options, const RunOptions& run) {
   if (!options.batch.empty()) return runBatch(options, run);
+  if (const auto max_error = shareOf(options.max_error)) return runWithin(*max_error, options, run);
   const std::vector<const SlabModel*> models = chosenModels(options);
   SlabQuestion question = slabQuestion(options);
   requireExactFor(options, models);
@@ -56,12 +136,8 @@ int runSlab(const SlabOptions& options, const RunOptions& run) {
     for (const ModelAnswer& given : answers) text += (text.empty() ? "" : "\n") + slabText(question, given, tolerance);
   }
   if (!options.plot.empty()) {
-    std::vector<const SlabModel*> shown;
-    for (const SlabModel* model : models)
-      if (model->gives_radiance && !model->is_sample) shown.push_back(model);
-    if (shown.empty()) throw InvalidInput("--plot: must have a model other than mc");
-    writeWhole(options.plot, slabPlot(shown, question, options.plot_log));
-    if (!run.json) text += fmt::format("\nwrote {}\n", options.plot);
+    const std::string wrote = plotted(options, models, question);
+    if (!run.json) text += wrote;
   }
   fmt::print("{}", text);
   return 0;
@@ -74,6 +150,15 @@ CLI::Validator number() {
         double value = 0.;
         return !text.empty() && CLI::detail::lexical_cast(text, value) ? std::string()
                                                                        : "\"" + text + "\": must be a number";
+      },
+      "");
+}
+
+CLI::Validator share() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        return shareOf(text) ? std::string()
+                             : "\"" + text + "\": must be a share or per cent, such as 0.01 or 1%, 1e-15 to 1";
       },
       "");
 }
@@ -131,8 +216,13 @@ void addSlab(CLI::App& app, RunOptions& run, int& status) {
                   "less than this (default 1e-6)",
                   "Model");
   tolerance->check(numberIn(1e-15, 1., "a number, 1e-15 to 1"));
-  options.addFlag("--no-delta-m", slab->no_delta_m, "Cut the phase function's series at N moments, without delta-M",
-                  "Model");
+  auto* max_error = options.add("--max-error", slab->max_error,
+                                "Choose the model: the cheapest closed form whose measured error of what is printed is "
+                                "at most this, such as 1% or 0.01, or else the exact solver",
+                                "Model");
+  max_error->check(share());
+  auto* no_delta_m = options.addFlag("--no-delta-m", slab->no_delta_m,
+                                     "Cut the phase function's series at N moments, without delta-M", "Model");
   auto* no_corrections = options.addFlag("--no-corrections", slab->no_corrections,
                                          "Radiance by N moments of the phase function, without corrections", "Model");
   auto* collocation = options.addFlag(
@@ -200,6 +290,7 @@ void addSlab(CLI::App& app, RunOptions& run, int& status) {
   auto* output = options.add("-o", slab->output, "File for the results of --batch, instead of stdout", results);
 
   exclude(streams, {tolerance});
+  exclude(max_error, {model, streams, tolerance, no_delta_m, no_corrections, collocation, paths, residual});
   exclude(moments, {g});
   exclude(leaves, {omega, g, moments});
   exclude(layers, {omega, g, moments, thickness, leaves});

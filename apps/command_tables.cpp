@@ -76,19 +76,29 @@ std::string secondTable(const Rows& rows, const Models& models) {
   return text;
 }
 
+std::string irradianceTable(const std::vector<double>& irradiance, const Models& models) {
+  std::string text =
+      fmt::format("\nIrradiance of leaves in slabs of thickness 1 .. 16: RMS error [%]\n\n{}", header(models, ""));
+  text += fmt::format("  {:<8g}", kIrradianceAlbedo);
+  for (const double error : irradiance) text += fmt::format(" {:9.3f}", 100. * error);
+  return text + '\n';
+}
+
 std::string notes(const Models& models) {
   std::string text =
       "\nEach is against the exact solution (N = 32): diffuse radiance over all directions, depths 0, 1 ... 10 (or to "
       "the\n"
       "thickness) and beams 0, 10 ... 60 degrees from the normal, per power that arrives; total: RMS over the "
       "albedos.\n"
+      "Irradiance: (P+ + P-) / 2 at eleven depths, isotropic, sun upright; RMS of the errors over RMS of the exact "
+      "values.\n"
       "paper: Shinya et al. 2013, S simplified, R refined; how many directions and depths it takes, how it forms its\n"
       "total and which g its Table 2 is for is not printed.\n";
   for (const SlabModel* model : models) text += fmt::format("{}: {}\n", model->name, model->label);
   return text;
 }
 
-std::string json(const Rows& rows) {
+std::string json(const Rows& rows, const std::vector<double>& irradiance, const Models& models) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const SlabTableRow& row : rows) {
     nlohmann::ordered_json entry{{"table", row.table}, {"g", row.asymmetry}, {"albedo", row.albedo}};
@@ -100,7 +110,15 @@ std::string json(const Rows& rows) {
     entry["rms"] = row.rms;
     list.push_back(std::move(entry));
   }
-  return nlohmann::ordered_json{{"rows", std::move(list)}}.dump(2) + "\n";
+  nlohmann::ordered_json leaves = nlohmann::ordered_json::array();
+  for (std::size_t m = 0; m < models.size(); ++m)
+    leaves.push_back({{"g", 0},
+                      {"albedo", kIrradianceAlbedo},
+                      {"mu0", 1},
+                      {"thickness", {1, 16}},
+                      {"model", models[m]->name},
+                      {"rms", irradiance[m]}});
+  return nlohmann::ordered_json{{"rows", std::move(list)}, {"leaf_irradiance", std::move(leaves)}}.dump(2) + "\n";
 }
 
 int runTables(const RunOptions& run) {
@@ -110,7 +128,10 @@ int runTables(const RunOptions& run) {
     fmt::print(stderr, "sunfleck: interrupted before the tables were done\n");
     return 1;
   }
-  fmt::print("{}", run.json ? json(rows) : firstTable(rows, models) + secondTable(rows, models) + notes(models));
+  const std::vector<double> irradiance = slabIrradianceErrors(models, kIrradianceAlbedo);
+  fmt::print("{}", run.json ? json(rows, irradiance, models)
+                            : firstTable(rows, models) + secondTable(rows, models) +
+                                  irradianceTable(irradiance, models) + notes(models));
   return 0;
 }
 

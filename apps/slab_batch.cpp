@@ -123,8 +123,8 @@ void append(std::string& text, double value) {
 
 class Batch {
  public:
-  Batch(const std::string& file, const SlabModel& model, const pp::Settings& settings)
-      : file_(file), model_(model), settings_(settings) {}
+  Batch(const std::string& file, const SolveCases& solve, bool names_models)
+      : file_(file), solve_(solve), names_models_(names_models) {}
 
   // Lines to results. The first chunk holds the header.
   void solve(Chunk& chunk) const {
@@ -139,40 +139,28 @@ class Batch {
         constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // as spreadsheets write it
         if ((line.starts_with(kByteOrderMark) ? line.substr(kByteOrderMark.size()) : line) != kHeader)
           throw InvalidInput(fmt::format("{}:1: \"{}\": must be {}", file_, line.substr(0, 80), kHeader));
-        chunk.results = fmt::format("{},reflectance,transmittance,direct\n", kHeader);
+        chunk.results = fmt::format("{},reflectance,transmittance,direct{}\n", kHeader, names_models_ ? ",model" : "");
       } else if (!line.empty()) {
         cases.push_back(parsed(line, file_, number));
         lines.push_back(line);
       }
     }
-    const std::vector<pp::SlabFluxes> results = fluxesOf(cases);
+    const std::vector<ChosenFluxes> results = solve_(cases);
     chunk.results.reserve(chunk.text.size() + 64 * cases.size() + 64);
     for (std::size_t i = 0; i < cases.size(); ++i) {
       chunk.results += lines[i];
-      append(chunk.results, results[i].reflectance);
-      append(chunk.results, results[i].transmittance);
-      append(chunk.results, results[i].direct);
+      append(chunk.results, results[i].fluxes.reflectance);
+      append(chunk.results, results[i].fluxes.transmittance);
+      append(chunk.results, results[i].fluxes.direct);
+      if (names_models_) chunk.results += ',' + results[i].model;
       chunk.results += '\n';
     }
   }
 
  private:
-  std::vector<pp::SlabFluxes> fluxesOf(const std::vector<pp::SlabCase>& cases) const {
-    std::vector<pp::SlabFluxes> results(cases.size());
-    if (&model_ == &exactSlabModel()) {
-      pp::solveSlabs(cases, results, settings_.streams, settings_.delta_m);
-      return results;
-    }
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      const SlabBudget budget = model_.solve(homogeneousSlab(cases[i], settings_))->budget();
-      results[i] = {budget.reflectance, budget.transmittance, budget.direct};
-    }
-    return results;
-  }
-
   std::string file_;
-  const SlabModel& model_;
-  pp::Settings settings_;
+  const SolveCases& solve_;
+  bool names_models_;
 };
 
 void write(std::FILE* file, std::string_view text, const std::string& name) {
@@ -223,9 +211,9 @@ struct Interrupted {};
 
 }  // namespace
 
-bool solveBatch(const std::string& cases, const SlabModel& model, const pp::Settings& settings,
+bool solveBatch(const std::string& cases, const SolveCases& solve, bool names_models,
                 const std::filesystem::path& output, const Progress& progress) {
-  const Batch batch(cases, model, settings);
+  const Batch batch(cases, solve, names_models);
   if (!output.empty()) try {
       writeWhole(output, [&](const std::filesystem::path& temporary) {
         File out(std::fopen(temporary.c_str(), "wb"));

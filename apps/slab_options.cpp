@@ -108,6 +108,15 @@ void requireSlabCase(const pp::SlabCase& slab, const std::string& where) {
   check(slab.mu0 >= pp::kLeastCosine && slab.mu0 <= 1., "mu0", slab.mu0, "in (0, 1] (1e-100 or more)");
 }
 
+std::optional<double> shareOf(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  std::optional<double> share = numberOf(text);
+  if (share && percent) share = *share / 100.;
+  if (!share || !(*share >= 1e-15 && *share <= 1.)) return std::nullopt;
+  return share;
+}
+
 std::vector<const SlabModel*> chosenModels(const SlabOptions& options) {
   std::string names;
   for (const SlabModel& model : slabModels()) names += (names.empty() ? "" : ", ") + std::string(model.name);

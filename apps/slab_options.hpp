@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/compare/slab_answer.hpp"
@@ -27,12 +28,16 @@ struct SlabOptions {
   std::optional<double> sky;                                    // radiance from above [1/sr]
   std::optional<int> streams;       // else chosen by the tolerance; of a batch kBatchStreams
   std::optional<double> tolerance;  // kTolerance unless there are streams
+  std::string max_error;            // a share, or per cent with its sign; empty: the models are told
   bool no_delta_m = false, no_corrections = false, collocation = false, residual = false;
   std::optional<double> paths;  // of Monte Carlo
   std::vector<double> depths, mus, phis;
   std::string batch, output, plot;
   bool plot_log = false;
 };
+
+// The share that --max-error tells: "0.01" or "1%", 1e-15 .. 1. Nothing for another text.
+std::optional<double> shareOf(std::string_view text);
 
 // The models by their names. Throws InvalidInput for a name there is none of, or one twice.
 std::vector<const SlabModel*> chosenModels(const SlabOptions& options);

@@ -86,15 +86,62 @@ Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer, bool is_samp
   return json;
 }
 
+std::string percent(double error) {
+  if (std::isinf(error)) return "not known";
+  return error < 0.995 ? fmt::format("{:.2g} %", 100. * error) : fmt::format("{:.0f} %", 100. * error);
+}
+
+std::string choiceText(const SlabQuestion& question, const SlabChoice& choice, double max_error) {
+  std::string text = fmt::format("Within {:.6g} %: ", 100. * max_error);
+  if (!choice.promise()) return text + fmt::format("the exact solver, since {}\n\n", choice.reason);
+  text += fmt::format("{}, at most {} off in {}{}\n", choice.model->name, percent(choice.promise()->error),
+                      question.depths.empty() ? "shares" : "shares, fluxes and mean intensity",
+                      question.mus.empty() ? "" : ", and in radiance as RMS over all directions");
+  text += fmt::format("{:>16} {:>10} {:>12}\n", "closed form", "cost", "may be off");
+  for (const TierPromise& promise : choice.promises)
+    text += fmt::format("{:>16} {:>10.3g} {:>12}{}\n", promise.tier->name, promise.cost, percent(promise.error),
+                        &promise == choice.promise() ? "  <- the cheapest that keeps it" : "");
+  return text + "cost: time at one depth over that of spp's fluxes\n\n";
+}
+
+Json choiceJson(const SlabChoice& choice, double max_error) {
+  Json promises = Json::array();
+  for (const TierPromise& promise : choice.promises) {
+    Json entry{{"model", promise.tier->name}, {"cost", promise.cost}, {"promised_error", nullptr}};
+    if (std::isfinite(promise.error)) entry["promised_error"] = promise.error;
+    promises.push_back(std::move(entry));
+  }
+  Json json{{"model", choice.model->name}, {"max_error", max_error}};
+  if (choice.promise())
+    json["promised_error"] = choice.promise()->error;
+  else
+    json["reason"] = choice.reason;
+  json["closed_forms"] = std::move(promises);
+  return json;
+}
+
 }  // namespace
+
+std::string slabText(const SlabQuestion& question, const ModelAnswer& answer, const SlabChoice& choice,
+                     double max_error) {
+  return choiceText(question, choice, max_error) + slabText(question, answer, max_error);
+}
+
+std::string slabJson(const SlabQuestion& question, const ModelAnswer& answer, const SlabChoice& choice,
+                     double max_error) {
+  Json json = choiceJson(choice, max_error);
+  json.update(jsonOf(question, answer.answer, false));
+  return json.dump(2) + "\n";
+}
 
 std::string slabText(const SlabQuestion& question, const ModelAnswer& given, double tolerance) {
   const SlabAnswer& answer = given.answer;
   const SlabBudget& budget = answer.budget;
-  const std::string effort = given.model->is_sample ? fmt::format("{} paths", question.setup.effort.paths)
-                                                    : fmt::format("N = {}", answer.streams);
+  const std::string effort = given.model->is_sample ? fmt::format(", {} paths", question.setup.effort.paths)
+                             : answer.streams > 0   ? fmt::format(", N = {}", answer.streams)
+                                                    : "";
   std::string text =
-      fmt::format("{} ({}), {}{:>12.3g} ms\n", given.model->name, given.model->label, effort, 1e3 * answer.seconds);
+      fmt::format("{} ({}){}{:>12.3g} ms\n", given.model->name, given.model->label, effort, 1e3 * answer.seconds);
   if (answer.difference)
     text +=
         *answer.difference < tolerance

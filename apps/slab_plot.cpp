@@ -84,10 +84,14 @@ std::string subtitleOf(const SlabQuestion& question) {
 
 }  // namespace
 
+std::vector<double> plotDepths(const SlabQuestion& question) {
+  if (!question.depths.empty()) return question.depths;
+  const double thickness = totalThickness(question);
+  return std::isfinite(thickness) ? std::vector{0., 0.5 * thickness, thickness} : std::vector{0., 1., 10.};
+}
+
 std::string slabPlot(std::span<const SlabModel* const> models, const SlabQuestion& question, bool logarithmic) {
-  std::vector<double> depths = question.depths;
-  if (const double thickness = totalThickness(question); depths.empty())
-    depths = std::isfinite(thickness) ? std::vector{0., 0.5 * thickness, thickness} : std::vector{0., 1., 10.};
+  std::vector<double> depths = plotDepths(question);
   std::ranges::sort(depths);
   const auto repeated = std::ranges::unique(depths);
   depths.erase(repeated.begin(), repeated.end());

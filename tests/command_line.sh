@@ -186,6 +186,13 @@ refuses "layer_fields.csv:2" slab --layers layer_fields.csv
 refuses "layer_header.csv:1" slab --layers layer_header.csv
 refuses "no_layer.csv" slab --layers no_layer.csv
 refuses "excludes" slab --tolerance 1e-3 --streams 8
+for value in 0 0% -1% 101% 1.5 nan inf x % "" "1 %%"; do refuses "--max-error" slab --max-error "$value"; done
+for option in "--model spp" "--streams 8" "--tolerance 1e-3" --residual --no-delta-m "--paths 1000"; do
+  refuses "excludes" slab --max-error 1% $option
+done
+refuses "thickness" slab --max-error 1% --thickness -1
+printf 'g,omega,thickness,mu0\n0,0.9,1,0\n' >short_zero.csv
+refuses "short_zero.csv:2: mu0" slab --max-error 1% --batch short_zero.csv
 refuses "excludes" slab --leaves spherical --omega 0.5
 refuses "excludes" slab --layers no_layer.csv --thickness 2
 refuses "excludes" slab --moments word.txt --g 0.5
@@ -277,6 +284,27 @@ does "unit of the sky's" slab --sky 1 --depths 1
 does "wrote field.svg" slab --model pp,spp --g 0.5 --depths 0,1 --plot field.svg --plot-log
 tail -c 7 field.svg | grep -q "</svg>" || fail "slab --plot: no whole picture"
 does '"models"' slab --model pp,spp --json
+does "Within 1 %: nstream:2:1, at most" slab --max-error 1%
+does "Within 1 %: nstream:2:1, at most" slab --max-error 0.01
+does '"promised_error"' slab --max-error 30% --json
+does "RMS over all directions" slab --max-error 5% --mu 1,-0.5 --g 0.3
+does "the exact solver, since no closed form keeps it" slab --max-error 1e-6
+does "the exact solver, since the slab is outside of the map" slab --max-error 1% --mu0 0.01
+does "the exact solver, since errors of closed forms are not mapped" slab --max-error 1% --ground-albedo 0.5
+does '"reason"' slab --max-error 1% --leaves spherical --json
+does "wrote chosen.svg" slab --max-error 2% --plot chosen.svg
+"$program" slab --max-error 1% --depths 1 | grep -q "radiance \[" && fail "slab --max-error: radiance nobody asked for"
+does "g,omega,thickness,mu0,reflectance,transmittance,direct,model" slab --max-error 1% --batch cases.csv --quiet
+"$program" slab --max-error 1% --batch many.csv -o chosen.csv 2>turns.txt || fail "slab --max-error --batch: status $?"
+cut -d, -f1-4 chosen.csv | cmp -s - many.csv || fail "slab --max-error --batch: lines are lost or out of order"
+"$program" slab --max-error 1% --batch many.csv --quiet --threads 1 | cmp -s - chosen.csv ||
+  fail "slab --max-error --batch: the results depend on the number of threads"
+[ "$(awk '{ rows += $2 } END { print rows }' turns.txt)" -eq 40000 ] || fail "slab --max-error --batch: rows not counted"
+grep -q "spp:" turns.txt && grep -q "pp:16:" turns.txt || fail "slab --max-error --batch: $(cat turns.txt)"
+# 1 %, and a little for what N = 64 is off itself in the flattest light.
+"$program" slab --batch many.csv --streams 64 -o exact.csv && paste -d, exact.csv chosen.csv |
+  awk -F, 'NR > 1 { for (i = 5; i < 7; ++i) if (($i - $(i + 7)) ^ 2 > 0.011 ^ 2) exit 1 }' ||
+  fail "slab --max-error --batch: an error is not kept"
 
 # Ctrl-C at any moment ends the program in an orderly way: done before it came (0), ended early (1), or not yet listening
 # (130); never by a crash.

@@ -107,10 +107,8 @@ std::string directionBenchPlot(const std::vector<DirectionBenchPoint>& points, c
                  .y_title = "RMS error of G [1]",
                  .curves = {}};
   for (const bool spread : {true, false}) {
-    LogCurve curve{.label = spread ? "spread axes" : "axes at random",
-                   .colour = spread ? "#1b7837" : "#b2182b",
-                   .dashed = !spread,
-                   .points = {}};
+    LogCurve curve{
+        .label = spread ? "spread axes" : "axes at random", .colour = spread ? "#1b7837" : "#b2182b", .points = {}};
     for (const DirectionBenchPoint& p : points)
       if (p.spread == spread)
         curve.points.push_back({.x = static_cast<double>(p.directions),
@@ -118,7 +116,7 @@ std::string directionBenchPlot(const std::vector<DirectionBenchPoint>& points, c
                                 .mark = spread ? std::to_string(p.directions) : ""});
     panel.curves.push_back(std::move(curve));
   }
-  return logPlot("G-factor: error by sample directions", {panel}, 1);
+  return logPlot("The G-factor by its number of sample directions", "Each set turned at random four times", {panel}, 1);
 }
 
 }  // namespace sunfleck

@@ -13,14 +13,17 @@ struct LogPoint {
 };
 struct LogCurve {
   std::string label, colour;
-  bool dashed = false;
+  bool joined = true;  // its points by a line
   std::vector<LogPoint> points;
 };
 struct LogPanel {
   std::string title, x_title, y_title;
+  bool x_seconds = false;  // x told in ns, us, ms and s
   std::vector<LogCurve> curves;
 };
-// Panels in rows of `columns`, each with its own axes over whole decades. Curves of one label share one legend entry.
-std::string logPlot(const std::string& title, const std::vector<LogPanel>& panels, int columns);
+// Panels in rows of `columns`, each with its own axes over whole decades and its own legend, which stands at the lower
+// left: where points fall from the upper left to the lower right. Marks give way to points and to each other.
+std::string logPlot(const std::string& title, const std::string& subtitle, const std::vector<LogPanel>& panels,
+                    int columns);
 
 }  // namespace sunfleck

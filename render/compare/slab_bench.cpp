@@ -3,169 +3,187 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cmath>
-#include <numbers>
+#include <ctime>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <thread>
 
 #include "render/compare/log_plot.hpp"
-#include "render/compare/slab_models.hpp"
+#include "render/compare/slab_contestants.hpp"
 
 namespace sunfleck {
 namespace {
 
-constexpr std::array kMus{-1., -0.6, -0.2, 0.2, 0.6, 1.};
-constexpr std::array kPhis{0., 0.5 * std::numbers::pi, std::numbers::pi};
-constexpr int kReferenceStreams = 256;
+using Kind = NamedContestant::Kind;
+using Answer = SlabContestant::Answer;
+constexpr int kReferenceStreams = 128;
+constexpr int kRounds = 15;
+constexpr double kTurnSeconds = 1e-3;  // far above the clock's grain
 
-struct SlabProblem {
-  const char* name;
-  pp::SlabCase slab;
-};
-constexpr std::array kProblems{
-    SlabProblem{"forward", {.asymmetry = 0.85, .albedo = 0.99, .thickness = 10., .mu0 = 0.5}},
-    SlabProblem{"isotropic", {.asymmetry = 0., .albedo = 0.99, .thickness = 10., .mu0 = 0.5}},
-};
-
-struct SlabValues {
-  double reflectance = 0., transmittance = 0.;
-  std::vector<double> radiances = std::vector<double>(3 * kMus.size() * kPhis.size());
-};
-
-void solveFluxes(pp::Solver& solver, const pp::Problem& problem, SlabValues& values) {
-  solver.solve(problem);
-  values.reflectance = solver.reflectance();
-  values.transmittance = solver.transmittance();
+std::string machineName() {
+  std::ifstream about("/proc/cpuinfo");
+  std::string name = "unknown processor";
+  for (std::string line; std::getline(about, line);)
+    if (line.starts_with("model name")) {
+      name = line.substr(std::min(line.size(), line.find(':') + 2));
+      break;
+    }
+  return fmt::format("{}, {} threads", name, std::thread::hardware_concurrency());
 }
 
-void solveRadiances(pp::Solver& solver, const pp::Problem& problem, SlabValues& values) {
-  const double thickness = problem.layers.front().thickness;
-  const std::array depths{0., 0.5 * thickness, thickness};
-  solver.solve(problem);
-  solver.radiances(depths, kMus, kPhis, values.radiances);
-}
-
-// Seconds that `work` takes: the median of at least 5 and at most 51 repeats within a tenth of a second, after one that
-// brings memory and caches into place. Short work is repeated within a repeat, to be far above the clock's grain.
-template <typename Work>
-double medianSeconds(const Work& work) {
-  using Clock = std::chrono::steady_clock;
-  const auto timed = [&](int times) {
-    const auto start = Clock::now();
-    for (int i = 0; i < times; ++i) work();
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
-  const double first = std::min(timed(1), timed(1));
-  const int times = first < 2e-4 ? static_cast<int>(2e-4 / std::max(first, 1e-7)) + 1 : 1;
-  std::vector<double> seconds;
-  for (double spent = 0.; seconds.size() < 5 || (spent < 0.1 && seconds.size() < 51);) {
-    seconds.push_back(timed(times) / times);
-    spent += seconds.back() * times;
-  }
-  std::ranges::nth_element(seconds, seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2));
-  return seconds[seconds.size() / 2];
-}
-
-double relativeRms(const std::vector<double>& values, const std::vector<double>& exact) {
+void addErrors(const SlabCourse& course, const Answer& found, const Answer& exact, SlabBenchRow& row) {
   double deviation = 0., size = 0.;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    deviation += (values[i] - exact[i]) * (values[i] - exact[i]);
-    size += exact[i] * exact[i];
+  for (std::size_t i = 0; i < exact.powers.size(); ++i) {
+    deviation += std::pow(found.powers[i] - exact.powers[i], 2);
+    size += std::pow(exact.powers[i], 2);
   }
-  return std::sqrt(deviation / size);
+  row.irradiance_error = std::sqrt(deviation / size);
+  row.flux_error = found.flux_up.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.;
+  for (std::size_t i = 0; i < found.flux_up.size(); ++i)
+    row.flux_error = std::max({row.flux_error, std::abs(found.flux_up[i] - exact.flux_up[i]),
+                               std::abs(found.flux_down[i] - exact.flux_down[i])});
+  double radiance = 0.;
+  for (std::size_t i = 0; i < exact.radiances.size(); ++i)
+    radiance += course.weights[i / course.phis.size() % course.mus.size()] *
+                std::pow(found.radiances[i] - exact.radiances[i], 2);
+  row.radiance_error = std::sqrt(radiance / static_cast<double>(course.places() * course.phis.size()));
+  if (!(row.irradiance_error < 1. && row.radiance_error < 0.2))
+    throw std::runtime_error(fmt::format("{}: is no approximation: {:.3g} off in irradiance, {:.3g} in radiance",
+                                         row.model, row.irradiance_error, row.radiance_error));
 }
 
-SlabBenchPoint measured(const SlabProblem& given, const pp::Settings& settings, const SlabValues& exact) {
-  const pp::Problem problem = homogeneousSlab(given.slab).problem;
-  pp::Solver solver(settings);
-  SlabValues values;
-  SlabBenchPoint point{.problem = given.name, .slab = given.slab, .settings = settings};
-  point.flux_seconds = medianSeconds([&] { solveFluxes(solver, problem, values); });
-  point.radiance_seconds = medianSeconds([&] { solveRadiances(solver, problem, values); });
-  point.flux_error =
-      std::max(std::abs(values.reflectance - exact.reflectance), std::abs(values.transmittance - exact.transmittance));
-  point.radiance_error = relativeRms(values.radiances, exact.radiances);
-  return point;
+// What this thread has had of a processor: other programs do not count.
+double threadSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-const char* onOff(bool on) {
-  return on ? "on" : "off";
-}
-
-// Errors of rounding alone would stretch the axis without telling anything.
-constexpr double kFloor = 1e-16;
-
-LogPanel panelOf(const std::vector<SlabBenchPoint>& points, const SlabProblem& problem, bool radiance) {
-  struct Way {
-    bool delta_m, corrections;
-    const char *label, *colour;
-  };
-  static constexpr std::array ways{Way{true, true, "delta-M and corrections", "#1b7837"},
-                                   Way{true, false, "delta-M", "#2166ac"}, Way{false, true, "corrections", "#e08214"},
-                                   Way{false, false, "neither", "#b2182b"}};
-  LogPanel panel{
-      .title = fmt::format("{}, {} (g {:g}, omega {:g}, thickness {:g}, mu0 {:g})", radiance ? "Radiance" : "Fluxes",
-                           problem.name, problem.slab.asymmetry, problem.slab.albedo, problem.slab.thickness,
-                           problem.slab.mu0),
-      .x_title = "time of one solution on one thread [s]",
-      .y_title = radiance ? "RMS error of radiance, relative [1]" : "error of reflectance, transmittance [1]",
-      .curves = {}};
-  for (const Way& way : ways) {
-    if (!radiance && !way.corrections) continue;  // fluxes do not know of corrections
-    LogCurve curve{.label = way.label, .colour = way.colour, .dashed = !way.corrections, .points = {}};
-    for (const SlabBenchPoint& p : points)
-      if (p.problem == problem.name && p.settings.delta_m == way.delta_m && p.settings.corrections == way.corrections)
-        curve.points.push_back({.x = radiance ? p.radiance_seconds : p.flux_seconds,
-                                .y = std::max(kFloor, radiance ? p.radiance_error : p.flux_error),
-                                .mark = way.delta_m && way.corrections ? std::to_string(p.settings.streams) : ""});
-    if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
+// Seconds of one evaluation, by as many as fill a turn.
+template <typename Work>
+double timedTurn(const Work& work) {
+  std::size_t evaluations = 0;
+  const double start = threadSeconds();
+  for (;;) {
+    evaluations += work();
+    const double seconds = threadSeconds() - start;
+    if (seconds >= kTurnSeconds) return seconds / static_cast<double>(evaluations);
   }
+}
+
+double median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+bool race(std::vector<NamedContestant>& contestants, std::vector<SlabBenchRow>& rows, const Progress& progress) {
+  std::vector<std::vector<double>> powers(rows.size()), radiances(rows.size());
+  for (int round = -1; round < kRounds; ++round) {  // the first brings memory and caches into place
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      SlabContestant& contestant = *contestants[i].contestant;
+      const double power = timedTurn([&] { return contestant.evaluatePowers(); });
+      const double radiance = timedTurn([&] { return contestant.evaluateRadiances(); });
+      if (round < 0) continue;
+      powers[i].push_back(power);
+      radiances[i].push_back(radiance);
+    }
+    if (!goOn(progress, static_cast<double>(round + 2) / (kRounds + 1))) return false;
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].power_seconds = median(powers[i]);
+    rows[i].radiance_seconds = median(radiances[i]);
+  }
+  return true;
+}
+
+std::string kindName(Kind kind) {
+  return kind == Kind::kTier ? "closed form" : kind == Kind::kTable ? "table" : "exact";
+}
+
+// What is written beside a point, and the curve it belongs to.
+std::string markOf(const SlabBenchRow& row) {
+  if (row.kind == "exact") return fmt::format("N = {}", row.streams);
+  if (row.azimuth_orders > 0) return fmt::format("n = {}", row.streams);
+  static const std::map<std::string, std::string> kNames{
+      {"spp", "SPP"}, {"sppr", "SPP, refined"}, {"twostream", "two-stream"}};
+  const auto found = kNames.find(row.model);
+  return found == kNames.end() ? row.model : found->second;
+}
+int curveOf(const SlabBenchRow& row, bool radiance) {
+  if (row.kind == "exact") return 5;
+  if (row.kind == "table") return 4;
+  if (row.azimuth_orders == 0) return 0;
+  if (!radiance || row.azimuth_orders == 1) return 1;
+  return row.azimuth_orders == 2 && row.streams > 1 ? 2 : 3;
+}
+
+LogPanel panelOf(const SlabBench& bench, bool radiance) {
+  LogPanel panel{.title = radiance ? "Radiance in one direction" : "Irradiance of a leaf (P+ and P-)",
+                 .x_title = "time of one evaluation on one thread",
+                 .y_title = radiance ? "RMS error of radiance, beam of irradiance 1 [1/sr]"
+                                     : "RMS error of irradiance, relative [1]",
+                 .x_seconds = true,
+                 .curves = {{.label = "two halves", .colour = "#b2182b", .joined = false},
+                            {.label = radiance ? "n streams, mean over the azimuth" : "n streams of each half",
+                             .colour = "#e08214"},
+                            {.label = "n streams, two azimuth orders", .colour = "#7b3294"},
+                            {.label = "n streams, all azimuth orders", .colour = "#1b7837"},
+                            {.label = "table, made once for a medium", .colour = "#666666"},
+                            {.label = "exact solver, N streams", .colour = "#2166ac"}}};
+  for (const SlabBenchRow& row : bench.rows) {
+    if (!radiance && !row.own_powers) continue;
+    panel.curves[static_cast<std::size_t>(curveOf(row, radiance))].points.push_back(
+        {.x = radiance ? row.radiance_seconds : row.power_seconds,
+         .y = radiance ? row.radiance_error : row.irradiance_error,
+         .mark = markOf(row)});
+  }
+  std::erase_if(panel.curves, [](const LogCurve& curve) { return curve.points.empty(); });
   return panel;
 }
 
 }  // namespace
 
-std::vector<SlabBenchPoint> benchSlabs(const Progress& progress) {
-  std::vector<SlabBenchPoint> points;
-  double done = 0.;
-  constexpr double kSteps = 2. + 5. * 7.;
-  for (const SlabProblem& given : kProblems) {
-    const pp::Problem problem = homogeneousSlab(given.slab).problem;
-    pp::Solver reference({.streams = kReferenceStreams});
-    SlabValues exact;
-    solveFluxes(reference, problem, exact);
-    solveRadiances(reference, problem, exact);
-    if (!goOn(progress, ++done / kSteps)) return {};
-    for (const bool delta_m : {true, false})
-      for (const bool corrections : {true, false})
-        for (int streams = 2; streams <= 128; streams *= 2) {
-          if (given.slab.asymmetry == 0. && !(delta_m && corrections)) continue;
-          points.push_back(
-              measured(given, {.streams = streams, .delta_m = delta_m, .corrections = corrections}, exact));
-          if (!goOn(progress, ++done / kSteps)) return {};
-        }
+SlabBench benchSlabs(const Progress& progress) {
+  const SlabCourse course = slabCourse();
+  constexpr double kMaking = 0.6;  // share of the time that tables take
+  std::vector<NamedContestant> contestants =
+      slabContestants(course, [&](double done) { return goOn(progress, kMaking * done); });
+  if (contestants.empty()) return {};
+  const Answer exact = exactContestant(course, kReferenceStreams)->answer();
+  SlabBench bench{.machine = machineName(), .rows = {}};
+  for (NamedContestant& entry : contestants) {
+    bench.rows.push_back({.model = entry.name,
+                          .kind = kindName(entry.kind),
+                          .streams = entry.streams,
+                          .azimuth_orders = entry.azimuth_orders,
+                          .own_powers = entry.own_powers});
+    addErrors(course, entry.contestant->answer(), exact, bench.rows.back());
   }
-  return points;
+  if (!race(contestants, bench.rows, [&](double done) { return goOn(progress, kMaking + (1. - kMaking) * done); }))
+    return {};
+  return bench;
 }
 
-std::string slabBenchCsv(const std::vector<SlabBenchPoint>& points) {
+std::string slabBenchCsv(const SlabBench& bench) {
   std::string csv =
-      "problem,g,omega,thickness,mu0,model,streams,delta_m,corrections,flux_seconds,flux_error,radiance_seconds,"
-      "radiance_error\n";
-  for (const SlabBenchPoint& p : points)
-    csv +=
-        fmt::format("{},{},{},{},{},pp,{},{},{},{:.4g},{:.4g},{:.4g},{:.4g}\n", p.problem, p.slab.asymmetry,
-                    p.slab.albedo, p.slab.thickness, p.slab.mu0, p.settings.streams, onOff(p.settings.delta_m),
-                    onOff(p.settings.corrections), p.flux_seconds, p.flux_error, p.radiance_seconds, p.radiance_error);
+      "model,kind,streams,azimuth_orders,power_seconds,irradiance_error,flux_error,radiance_seconds,radiance_error\n";
+  for (const SlabBenchRow& row : bench.rows)
+    csv += fmt::format("{},{},{},{},{:.4g},{:.4g},{},{:.4g},{:.4g}\n", row.model, row.kind, row.streams,
+                       row.azimuth_orders, row.power_seconds, row.irradiance_error,
+                       std::isnan(row.flux_error) ? "" : fmt::format("{:.4g}", row.flux_error), row.radiance_seconds,
+                       row.radiance_error);
   return csv;
 }
 
-std::string slabBenchPlot(const std::vector<SlabBenchPoint>& points) {
-  std::vector<LogPanel> panels;
-  for (const SlabProblem& problem : kProblems)
-    for (const bool radiance : {false, true}) panels.push_back(panelOf(points, problem, radiance));
-  return logPlot("Exact plane-parallel solver: run time against error; numbers are streams N; reference N = 256",
-                 panels, 2);
+std::string slabBenchPlot(const SlabBench& bench) {
+  return logPlot(
+      "Light in a slab: run time against error",
+      fmt::format("Twelve slabs (omega 0.95; g 0, 0.5; thickness 1, 4, 16; mu0 1, 0.5), five depths each; {}",
+                  bench.machine),
+      {panelOf(bench, false), panelOf(bench, true)}, 2);
 }
 
 }  // namespace sunfleck

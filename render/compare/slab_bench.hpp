@@ -4,28 +4,36 @@
 #include <vector>
 
 #include "core/progress.hpp"
-#include "pp_solver/slab_batch.hpp"
-#include "pp_solver/solver.hpp"
 
 namespace sunfleck {
 
-// What one way of solving one slab costs and how far it is off.
-struct SlabBenchPoint {
-  std::string problem;  // its name
-  pp::SlabCase slab;
-  pp::Settings settings;
-  double flux_seconds = 0.;      // to solve and read reflectance and transmittance: median of repeats
-  double flux_error = 0.;        // the larger error of the two [1]
-  double radiance_seconds = 0.;  // to solve and read radiances at 6 cosines, 3 azimuths and 3 depths: median
-  double radiance_error = 0.;    // RMS of their errors over the RMS of the radiances [1]
+// What one way of computing the light in a slab costs and how far it is off, on the slabs of slabCourse().
+struct SlabBenchRow {
+  std::string model;       // a closed form, a table or the exact solver, pp:N
+  std::string kind;        // "closed form", "table", "exact"
+  int streams = 0;         // n of each half of a closed form; N over both of the exact solver
+  int azimuth_orders = 0;  // of n streams; 0 where the model has no such choice
+  // Seconds of one evaluation, on one thread: of P+ and P- at a depth, and of radiance there in one direction; median
+  // of rounds. Closed forms: single precision, all that depends on the slab at hand. Tables: a look-up. Exact: a
+  // solution.
+  double power_seconds = 0., radiance_seconds = 0.;
+  double irradiance_error = 0.;  // of (P+ + P-) / 2: RMS of the errors over RMS of the exact values [1]
+  double flux_error = 0.;      // largest of the fluxes up and down, over the flux that arrives [1]; NaN: has no fluxes
+  double radiance_error = 0.;  // RMS over places and directions, for a beam of irradiance 1 [1/sr]
+  bool own_powers = true;      // P+ and P- are not those of an earlier row
 };
 
-// The exact solver at N = 2, 4, 8 ... 128, with and without delta-M and corrections, against itself at N = 256, on the
-// problem of bench_pp_solver (g 0.85, omega 0.99, thickness 10, mu0 0.5) and the same with isotropic scattering, where
-// delta-M and corrections have nothing to do and are on. On one thread. Ended early by `progress`: an empty list.
-std::vector<SlabBenchPoint> benchSlabs(const Progress& progress = {});
+struct SlabBench {
+  std::string machine;
+  std::vector<SlabBenchRow> rows;
+};
 
-std::string slabBenchCsv(const std::vector<SlabBenchPoint>& points);
-std::string slabBenchPlot(const std::vector<SlabBenchPoint>& points);  // SVG
+// Closed forms, tables and the exact solver side by side: first their errors, against the exact solver with N = 128;
+// then their times, in rounds in which each has its turn, so that what else the machine does falls on all alike. Throws
+// std::runtime_error where an answer is not what it should be. Ended early by `progress`: no rows.
+SlabBench benchSlabs(const Progress& progress = {});
+
+std::string slabBenchCsv(const SlabBench& bench);
+std::string slabBenchPlot(const SlabBench& bench);  // SVG
 
 }  // namespace sunfleck

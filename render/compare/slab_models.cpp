@@ -46,6 +46,32 @@ double thicknessOf(const SlabSetup& setup) {
   return setup.problem.layers.front().thickness;
 }
 
+// Direct light alone: all that SS knows.
+class DirectSlab : public SlabSolution {
+ public:
+  explicit DirectSlab(const SlabSetup& setup) : mu0_(setup.problem.beam->mu0), thickness_(thicknessOf(setup)) {
+    extinction_ = extinction(setup.problem.layers.front().medium, mu0_);
+  }
+  SlabBudget budget() const override {
+    const double direct = directAt(thickness_);
+    return {0., direct, direct, 1. - direct};
+  }
+  double incident() const override { return mu0_; }
+  pp::Fluxes fluxes(double depth) const override {
+    const double direct = directAt(depth);
+    return {.direct = mu0_ * direct, .mean_intensity = direct / (4. * std::numbers::pi)};
+  }
+  void radiances(std::span<const double>, std::span<const double>, std::span<const double>,
+                 std::span<double> result) override {
+    std::ranges::fill(result, 0.);
+  }
+  int streams() const override { return 0; }
+
+ private:
+  double directAt(double depth) const { return spp::precise::directPower(extinction_ * depth, mu0_); }
+  double mu0_, thickness_, extinction_;
+};
+
 // SPP as it is printed, without the refinement: radiance is the same for all directions of a half. Depth is scaled by
 // the beam's extinction, which all light has in it.
 class SimplifiedSlab : public SlabSolution {
@@ -201,6 +227,7 @@ const std::vector<SlabModel>& models() {
        .gives_radiance = true,
        .is_sample = false,
        .solve = solved<ExactSlab>},
+      closedForm("ss", "direct light alone", solved<DirectSlab>),
       closedForm("spp", "simplified plane-parallel, unrefined", solved<SimplifiedSlab>),
       closedForm("sppr", "simplified plane-parallel, refined", refinedSpp),
       closedForm("twostream", "hemispheric two-stream, refined", twoStream),

@@ -11,6 +11,7 @@
 #include "pp_solver/slab_batch.hpp"
 #include "pp_solver/solver.hpp"
 #include "render/reference/forward_trace.hpp"
+#include "spp/slab_tiers.hpp"
 
 namespace sunfleck {
 

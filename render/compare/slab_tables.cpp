@@ -88,6 +88,26 @@ std::vector<SlabTableRow> slabTables(std::span<const SlabModel* const> models, c
   return rows;
 }
 
+std::vector<double> slabIrradianceErrors(std::span<const SlabModel* const> models, double albedo, int streams) {
+  std::vector<double> errors(models.size(), 0.);
+  double size = 0.;
+  for (int thickness = 1; thickness <= 16; ++thickness) {
+    const SlabSetup setup =
+        homogeneousSlab({.albedo = albedo, .thickness = static_cast<double>(thickness)}, {.streams = streams});
+    const std::unique_ptr<SlabSolution> exact = exactSlabModel().solve(setup);
+    std::vector<std::unique_ptr<SlabSolution>> slabs;
+    for (const SlabModel* model : models) slabs.push_back(model->solve(setup));
+    for (int i = 0; i <= 10; ++i) {
+      const double depth = 0.1 * i * thickness, right = exact->fluxes(depth).mean_intensity;
+      size += right * right;
+      for (std::size_t m = 0; m < models.size(); ++m)
+        errors[m] += std::pow(slabs[m]->fluxes(depth).mean_intensity - right, 2);
+    }
+  }
+  for (double& error : errors) error = std::sqrt(error / size);
+  return errors;
+}
+
 std::vector<const SlabModel*> judgedSlabModels() {
   std::vector<const SlabModel*> models;
   for (const SlabModel& model : slabModels())

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/compare/slab_answer.hpp"
+#include "spp/slab_tiers.hpp"
+
+namespace sunfleck {
+
+// A closed form that may answer a question, and the error it keeps of all that is asked; infinite: none is promised.
+struct TierPromise {
+  const spp::SlabTier* tier;
+  double error;
+  double cost;  // over that of SPP's powers
+};
+
+// (S14) The cheapest way to answer a question within an error.
+struct SlabChoice {
+  std::vector<TierPromise> promises;  // of all tiers that answer such a question, the cheapest first
+  std::optional<std::size_t> chosen;  // of the promises; none: the exact solver
+  std::string reason;                 // why the exact solver
+  const SlabModel* model;             // that is to answer
+
+  const TierPromise* promise() const { return chosen ? &promises[*chosen] : nullptr; }
+};
+
+// What is asked: the shares at both faces; at each of the question's depths the fluxes, relative to what arrives, and
+// the mean intensity, relative to itself; and if it has cosines, the radiance there, RMS over all directions for a beam
+// of irradiance 1. What is absorbed may be off by the errors of both faces together, which is counted.
+SlabChoice chooseModel(const SlabQuestion& question, double max_error);
+
+// The reflectance and transmittance of a slab of a file, and by which model.
+struct ChosenFluxes {
+  pp::SlabFluxes fluxes;
+  std::string model;  // a tier's name, or pp:N
+};
+// Each by the cheapest closed form that keeps max_error of both, or by the exact solver with the smallest N of 8, 16
+// ... 256 whose result is nearer than that to the one before. Assumes valid cases.
+std::vector<ChosenFluxes> fluxesWithin(double max_error, std::span<const pp::SlabCase> cases);
+
+}  // namespace sunfleck

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace sunfleck::spp {
+
+// The cells of a map along one coordinate: between rising edges; and some edges are cells of their own, for values that
+// are exactly there.
+class MapAxis {
+ public:
+  MapAxis(std::string name, std::vector<double> edges, const std::vector<double>& own);
+
+  int cells() const { return cells_; }
+  int cell(double value) const;  // -1 outside and for NaN
+
+  const std::vector<double>& edges() const { return edges_; }
+  // The cells that touch an edge: those beside it, and its own if it has one.
+  std::vector<int> around(std::size_t edge) const;
+  std::array<double, 2> range(int cell) const;  // twice the same for an edge's own
+  std::string text() const;                     // name, edges, and a star on each that is a cell of its own
+
+ private:
+  std::string name_;
+  std::vector<double> edges_;
+  std::vector<int> own_;  // of each edge: its cell, or -1
+  int cells_;
+};
+
+}  // namespace sunfleck::spp
