@@ -21,22 +21,19 @@ double secondsSince(Clock::time_point start) {
 }
 
 constexpr float kMu0 = 1.f;  // the slab's normal is the light's axis
-// Leaves of all orientations whose reflectance and transmittance are alike send as much on into the light's forward
-// half as back: the paper's experiment. For other leaves it is an approximation.
-constexpr float kForwardShare = 0.5f;
-
 // Leaves whose powers are computed at once: few enough to stay in the nearest cache.
 constexpr std::size_t kBlock = 1024;
 
 // Adds to `sum` what each leaf of a block receives in one tree of the stand.
 void addIrradiance(Model model, std::span<const float> projection, std::span<const float> depth,
-                   std::span<const float> thickness, std::span<const float> compensation, float albedo,
+                   std::span<const float> thickness, std::span<const float> compensation, const LeafOptics& optics,
                    std::span<float> sum) {
   std::array<float, kBlock> down, up;
   const std::size_t leaves = sum.size();
   if (model != Model::ss)
-    spp::sppPowers(depth, thickness, kMu0, albedo, kForwardShare, std::span(down).first(leaves),
-                   std::span(up).first(leaves));
+    spp::sppPowers(depth, thickness, kMu0, optics.albedo(),
+                   spp::sphericalLeafForwardShare(optics.reflectance, optics.transmittance),
+                   std::span(down).first(leaves), std::span(up).first(leaves));
   for (std::size_t i = 0; i < leaves; ++i) {
     const float direct = spp::directPower(depth[i], kMu0);
     spp::SlabPowers powers{.down = direct, .up = 0.f};
@@ -81,7 +78,7 @@ std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, con
     const std::span<float> sum = std::span(irradiance).subspan(first, count);
     for (std::size_t tree = 0; tree < trees; ++tree)
       addIrradiance(model, part(geometry.projections), part(geometry.depths[tree].depth),
-                    part(geometry.depths[tree].thickness), part(geometry.compensation[tree]), optics.albedo(), sum);
+                    part(geometry.depths[tree].thickness), part(geometry.compensation[tree]), optics, sum);
     for (float& value : sum) value /= static_cast<float>(trees);
   });
   return irradiance;

@@ -30,6 +30,13 @@ SHARED_FN Number decayIntegral(Number rate, Number z) {
   return rateQuotient(Number(0.0f), rate, z, Number(1.0f), exp(-rate * z));
 }
 
+// (S8) T of leaves of all directions lit along the slab's normal: from 1/6, where they only reflect, to 5/6, where they
+// only transmit.
+SHARED_FN Number sphericalLeafForwardShare(Number reflectance, Number transmittance) {
+  Number albedo = max(reflectance + transmittance, Number(1.0e-30f));
+  return Number(0.5f) + (transmittance - reflectance) / (Number(3.0f) * albedo);
+}
+
 struct SlabPowers {
   Number down;  // P+: radiance integrated over the forward half of the sphere, direct light included  [1], 0 .. F + ...
   Number up;    // P-: radiance integrated over the backward half                                      [1]

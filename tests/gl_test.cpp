@@ -112,8 +112,9 @@ glm::vec3 perBand(const Scene& scene, const auto& of) {
 }
 
 // Powers of the slab less direct light.
-spp::SlabPowers diffuse(float depth, float thickness, float albedo) {
-  spp::SlabPowers powers = spp::sppPowers(depth, thickness, 1.f, albedo, 0.5f);
+spp::SlabPowers diffuse(float depth, float thickness, const LeafOptics& o) {
+  spp::SlabPowers powers =
+      spp::sppPowers(depth, thickness, 1.f, o.albedo(), spp::sphericalLeafForwardShare(o.reflectance, o.transmittance));
   powers.down -= spp::directPower(depth, 1.f);
   return powers;
 }
@@ -174,7 +175,7 @@ TEST(R3_TreePicture, OfALeafAloneBySpp) {
   const Scene scene = leaf.scene();
   const Image image = picture(scene, leaf.map, cameraFrom(90.f), Model::spp);
   const glm::vec3 expected = perBand(scene, [](const LeafOptics& o) {
-    return spp::leafRadiance(1.f, 1.f, 1.f, diffuse(0.f, 1.f, o.albedo()), o.reflectance, o.transmittance);
+    return spp::leafRadiance(1.f, 1.f, 1.f, diffuse(0.f, 1.f, o), o.reflectance, o.transmittance);
   });
   expectRadiance(image, 2, 2, expected, kShading);
 }
@@ -199,7 +200,7 @@ TEST(R3_TreePicture, OfALeafInShadow) {
       const Image image = picture(scene, map, camera, compensation == 1.f ? Model::spp : Model::sppg, cells);
       const glm::vec3 expected =
           compensation * perBand(scene, [](const LeafOptics& o) {
-            return spp::leafRadiance(-1.f, 0.f, -1.f, diffuse(1.f, 2.f, o.albedo()), o.reflectance, o.transmittance);
+            return spp::leafRadiance(-1.f, 0.f, -1.f, diffuse(1.f, 2.f, o), o.reflectance, o.transmittance);
           });
       expectRadiance(image, 2, 2, expected, kShading);
       EXPECT_GT(image.values[image.at(2, 2, 1)], 0.005f);
@@ -288,8 +289,7 @@ TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
   EXPECT_EQ(ss.values[ss.at(beyond.x, beyond.y, 3)], 0.f);
 
   // A plane gathers half the power of a half-sphere of uniform radiance.
-  const glm::vec3 passed =
-      perBand(scene, [](const LeafOptics& o) { return 0.5f * diffuse(1.f, 1.f, o.albedo()).down; });
+  const glm::vec3 passed = perBand(scene, [](const LeafOptics& o) { return 0.5f * diffuse(1.f, 1.f, o).down; });
   const Image spp = picture(scene, tree.map, camera, Model::spp);
   expectRadiance(spp, shadow.x, shadow.y, scene.ground_albedo * passed / kPi, kShading);
   EXPECT_GT(passed.g, 0.05f);
@@ -329,8 +329,7 @@ TEST(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
     scene.camera->target = {aside, 0.f};
     expectRadiance(gl::treePicture(scene, data, Model::ss), 1, 1, glm::vec3(0.f), 0.f);
     const glm::vec3 expected = perBand(scene, [&](const LeafOptics& o) {
-      return 0.25f *
-             spp::leafRadiance(cosine, 0.f, cosine, diffuse(1.f, 2.f, o.albedo()), o.reflectance, o.transmittance);
+      return 0.25f * spp::leafRadiance(cosine, 0.f, cosine, diffuse(1.f, 2.f, o), o.reflectance, o.transmittance);
     });
     expectRadiance(gl::treePicture(scene, data, Model::sppg), 1, 1, expected, kShading);
   }

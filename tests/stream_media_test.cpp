@@ -127,6 +127,16 @@ TEST(S8_ForwardShare, OfLeavesIsTheIntegralOfTheirScattering) {
   }
 }
 
+// (S8) Check the shaders' formula for leaves of all directions against that for any leaves. Error: rounding of Gauss's
+// rule.
+TEST(S8_SphericalLeafForwardShare, IsThatOfTheKernel) {
+  for (const auto& [reflectance, transmittance] : {std::pair{0.5, 0.}, {0., 0.9}, {0.6, 0.35}, {0.45, 0.45}}) {
+    const LeafScattering leaves{.reflectance = reflectance, .transmittance = transmittance};
+    EXPECT_NEAR(precise::sphericalLeafForwardShare(reflectance, transmittance), forwardShare(leaves, 1.), 1e-12);
+  }
+  EXPECT_EQ(precise::sphericalLeafForwardShare(0., 0.), 0.5);
+}
+
 // Check that the modes of every form are scaled to X' W M Y = 1, W the solid angles over 2 pi. Error: rounding, more
 // for many streams.
 TEST(S9_StreamModes, AreScaledToOne) {

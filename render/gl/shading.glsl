@@ -9,12 +9,12 @@ float compensationAt(vec3 place, uint tree) {
   return texture(compensation_texture, (cell + block) / vec3(textureSize(compensation_texture, 0))).r;
 }
 
-// Diffuse powers at a place of the equivalent slab, whose normal is the light's axis (mu0 = 1), for leaves that scatter
-// to both halves alike.
-SlabPowers diffusePowers(float depth, float thickness, float compensation, float albedo) {
+// Diffuse powers at a place of the equivalent slab, whose normal is the light's axis (mu0 = 1).
+SlabPowers diffusePowers(float depth, float thickness, float compensation, float reflectance, float transmittance) {
   if (choice.x == kSingleScattering) return SlabPowers(0.0, 0.0);
   float direct = directPower(depth, 1.0);
-  SlabPowers powers = sppPowers(depth, thickness, 1.0, albedo, 0.5);
+  SlabPowers powers = sppPowers(depth, thickness, 1.0, reflectance + transmittance,
+                                sphericalLeafForwardShare(reflectance, transmittance));
   if (choice.x == kSppg) powers = compensated(powers, direct, compensation);
   return SlabPowers(max(powers.down - direct, 0.0), max(powers.up, 0.0));
 }
@@ -25,8 +25,8 @@ vec3 surfaceRadiance(float to_light_cosine, Foliage foliage, float thickness, fl
                      vec3 transmittance) {
   vec3 radiance;
   for (int band = 0; band < 3; ++band) {
-    float albedo = leaf_reflectance[band] + leaf_transmittance[band];
-    SlabPowers diffuse = diffusePowers(foliage.before, thickness, compensation, albedo);
+    SlabPowers diffuse =
+        diffusePowers(foliage.before, thickness, compensation, leaf_reflectance[band], leaf_transmittance[band]);
     radiance[band] = leafRadiance(to_light_cosine, foliage.visible, to_light_cosine, diffuse, reflectance[band],
                                   transmittance[band]);
   }
