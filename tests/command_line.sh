@@ -231,6 +231,8 @@ does "reflectance" slab --omega 1 --thickness 5
 does "1 leaf and 0 wood" plant flat.obj
 does "cells" voxelize leaf.obj -o leaf.vdb --cell-size 0.1
 does "cells" voxelize leaf.vdb
+does "normal_xx" voxelize leaf.obj -o leaf.nvdb --cell-size 0.1
+does '"name": "density"' voxelize leaf.vdb --json
 does '"absorbed_leaves"' trace leaf.obj --paths 1000 --json
 does '"models"' --json leaf.obj --paths 1000 --no-pictures -o report
 does "wrote" validate leaf.obj --paths 1000 --no-pictures -o report
