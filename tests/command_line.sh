@@ -128,6 +128,10 @@ refuses "rotation" render rotated.toml -o x.png
 refuses "period" validate leaf.obj --period 0.01 0.01
 refuses "--only-picture" trace leaf.obj --only-picture -o x.csv
 refuses "/dev/null" voxelize leaf.obj -o /dev/null
+for ending in vdb nvdb; do  # files of some 100 KB and more, where only 20 KB may be written: as on a full disk
+  (trap '' XFSZ; ulimit -f 20; failures=0; refuses "cannot be written" voxelize leaf.obj -o full.$ending --cell-size 0.1
+   [ $failures -eq 0 ]) || failures=$((failures + 1))
+done
 refuses "albedo" trace leaf.obj --albedo 1.0000001
 
 # The slab's options: values out of range, files that are wrong, and options that do not go together.
