@@ -28,3 +28,4 @@ if(NOT OpenVDB_CMAKE_PATH)
 endif()
 list(APPEND CMAKE_MODULE_PATH "${OpenVDB_CMAKE_PATH}")
 find_package(OpenVDB REQUIRED)
+find_path(NanoVDB_INCLUDE_DIR nanovdb/NanoVDB.h REQUIRED)  # headers alone, beside those of OpenVDB

@@ -1,20 +1,22 @@
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
 
-#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <exception>
 #include <fstream>
 #include <glm/common.hpp>
+#include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "core/require.hpp"
-#include "core/whole_file.hpp"
 #include "grid/density_grid.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/detail/vdb_layout.hpp"
@@ -24,7 +26,6 @@ namespace sunfleck {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kName = "density";
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 33;  // [byte]
 
 std::string contents(const fs::path& file) {
@@ -46,103 +47,117 @@ std::string contents(const fs::path& file) {
   return bytes;
 }
 
-// Lets OpenVDB read the tree alone, at a place that has been walked: the rest of its reader trusts the file.
-openvdb::FloatTree::Ptr readTree(std::string bytes, const VdbFloatGrid& grid) {
-  std::istringstream in(std::move(bytes), std::ios::binary);
-  in.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-  openvdb::io::setVersion(in, openvdb::VersionId(grid.library_major, grid.library_minor), grid.file_version);
-  openvdb::io::setDataCompression(in, grid.compression);
-  auto tree = std::make_shared<openvdb::FloatTree>(0.f);
-  in.seekg(static_cast<std::streamoff>(grid.topology));
-  tree->readTopology(in, grid.half);
-  in.seekg(static_cast<std::streamoff>(grid.values));
-  tree->readBuffers(in, grid.half);
-  return tree;
-}
-
-void validateTransform(const VdbFloatGrid& grid) {
-  const double side = grid.scale.x;
-  require(side >= 1e-6 && side <= 1e6, "cell size [m]", side, "from 1e-6 to 1e6");
-  for (int axis = 1; axis < 3; ++axis)
-    require(std::abs(grid.scale[axis] - side) <= 1e-6 * side, "cell size [m]", grid.scale[axis],
-            "the same along x, y and z");
-  for (int axis = 0; axis < 3; ++axis)
-    require(std::abs(grid.translation[axis]) <= 1e9, "translation [m]", grid.translation[axis],
-            "a finite number of metres, at most 1e9 in size");
-}
-
-void validateValues(const openvdb::FloatTree& tree) {
-  const auto check = [](float density, const std::string& where) {
-    if (!(std::isfinite(density) && density >= 0.f)) require(false, where, density, "finite and not negative");
-  };
-  require(tree.background() == 0.f, "density [1/m] outside the cells", tree.background(), "0");
-  for (auto value = tree.cbeginValueAll(); value; ++value)
-    if (!(std::isfinite(*value) && *value >= 0.f)) {
-      std::ostringstream where;
-      where << "density [1/m] of cell " << value.getCoord();
-      check(*value, where.str());
+// A file that is read: what has been walked of it, and the stream from which OpenVDB may read that.
+class Grids {
+ public:
+  explicit Grids(std::string bytes) {
+    checkSeal(bytes);
+    density_ = required(bytes, kDensityName);
+    for (std::size_t i = 0; i < kNormalNames.size(); ++i) {
+      normals_[i] = findFloatGrid(bytes, kNormalNames[i]);
+      if (normals_[i].has_value() != normals_[0].has_value())
+        required(bytes, kNormalNames[normals_[0] ? i : 0]);  // some without the others mean nothing
     }
+    wood_ = findFloatGrid(bytes, kWoodName);
+    validateTransforms();
+    in_.str(std::move(bytes));
+  }
+
+  DensityTrees trees() {
+    DensityTrees trees;
+    trees.density = tree(density_);
+    for (std::size_t i = 0; i < normals_.size(); ++i)
+      if (normals_[i]) trees.normals[i] = tree(*normals_[i]);
+    if (wood_) trees.wood = tree(*wood_);
+    return trees;
+  }
+  double cellSize() const { return density_.scale.x; }
+  glm::dvec3 corner() const { return density_.translation - 0.5 * density_.scale.x; }
+
+ private:
+  static VdbFloatGrid required(std::string_view bytes, const char* name) {
+    const auto grid = findFloatGrid(bytes, name);
+    if (!grid) throw InvalidInput(std::string("holds no grid named \"") + name + "\"");
+    return *grid;
+  }
+
+  void validateTransforms() const {
+    const double side = density_.scale.x;
+    require(side >= 1e-6 && side <= 1e6, "cell size [m]", side, "from 1e-6 to 1e6");
+    for (int axis = 1; axis < 3; ++axis)
+      require(std::abs(density_.scale[axis] - side) <= 1e-6 * side, "cell size [m]", density_.scale[axis],
+              "the same along x, y and z");
+    for (int axis = 0; axis < 3; ++axis)
+      require(std::abs(density_.translation[axis]) <= 1e9, "translation [m]", density_.translation[axis],
+              "a finite number of metres, at most 1e9 in size");
+    const auto same = [&](const std::optional<VdbFloatGrid>& grid, const char* name) {
+      if (grid && !(grid->scale == density_.scale && grid->translation == density_.translation))
+        throw InvalidInput(std::string("holds a grid \"") + name + "\" in other cells than those of \"density\"");
+    };
+    for (std::size_t i = 0; i < normals_.size(); ++i) same(normals_[i], kNormalNames[i]);
+    same(wood_, kWoodName);
+  }
+
+  // Lets OpenVDB read the tree alone, at a place that has been walked: the rest of its reader trusts the file.
+  FloatTreePtr tree(const VdbFloatGrid& grid) {
+    in_.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
+    openvdb::io::setVersion(in_, openvdb::VersionId(grid.library_major, grid.library_minor), grid.file_version);
+    openvdb::io::setDataCompression(in_, grid.compression);
+    auto made = std::make_shared<openvdb::FloatTree>(0.f);
+    in_.seekg(static_cast<std::streamoff>(grid.topology));
+    made->readTopology(in_, grid.half);
+    in_.seekg(static_cast<std::streamoff>(grid.values));
+    made->readBuffers(in_, grid.half);
+    return made;
+  }
+
+  VdbFloatGrid density_;
+  std::array<std::optional<VdbFloatGrid>, kNormalNames.size()> normals_;
+  std::optional<VdbFloatGrid> wood_;
+  std::istringstream in_{std::ios::in | std::ios::binary};
+};
+
+std::string ofCell(const std::string& what, const openvdb::Coord& cell) {
+  std::ostringstream where;
+  where << what << " of cell " << cell;
+  return where.str();
 }
 
-openvdb::FloatGrid::Ptr describedGrid(const DensityGrid::Cells& cells, const std::string& source) {
-  // The grid of the file is a view of the cells' tree and changes nothing in it.
-  auto grid = openvdb::FloatGrid::create(std::const_pointer_cast<openvdb::FloatTree>(cells.tree));
-  auto transform = openvdb::math::Transform::createLinearTransform(cells.cell_size);
-  const glm::dvec3 centre = cells.corner + 0.5 * cells.cell_size;  // of cell (0, 0, 0)
-  transform->postTranslate(openvdb::Vec3d(centre.x, centre.y, centre.z));
-  grid->setTransform(transform);
-  grid->setName(kName);
-  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-  grid->setCreator(std::string("Sunfleck ") + SUNFLECK_VERSION);
-  const auto text = [&](const char* key, const std::string& value) {
-    grid->insertMeta(key, openvdb::StringMetadata(value));
-  };
-  text("description", "one-sided leaf area density: leaf area in a cell over the volume of the cell");
-  text("unit_density", "1/m");
-  text("length_unit", "m");
-  text("source", source);
-  grid->insertMeta("leaf_area_m2", openvdb::DoubleMetadata(cells.leaf_area));
-  return grid;
+// Finite values from `least` to `most`, and 0 outside the cells.
+void validateValues(const openvdb::FloatTree& tree, const std::string& what, float least, float most,
+                    const char* rule) {
+  require(tree.background() == 0.f, what + " outside the cells", tree.background(), "0");
+  for (auto value = tree.cbeginValueAll(); value; ++value)
+    if (!(std::isfinite(*value) && *value >= least && *value <= most))
+      require(false, ofCell(what, value.getCoord()), *value, rule);
+}
+
+void validateValues(const DensityTrees& trees) {
+  constexpr float any = std::numeric_limits<float>::max();
+  validateValues(*trees.density, "density [1/m]", 0.f, any, "finite and not negative");
+  if (trees.wood) validateValues(*trees.wood, "wood [1/m]", 0.f, any, "finite and not negative");
+  if (!trees.normals[0]) return;
+  for (std::size_t i = 0; i < kNormalNames.size(); ++i)
+    validateValues(*trees.normals[i], kNormalNames[i], -1.f, 1.f, "from -1 to 1");
+  for (auto value = trees.density->cbeginValueAll(); value; ++value) {
+    if (*value == 0.f) continue;
+    const openvdb::Coord cell = value.getCoord();
+    const auto m = [&](std::size_t i) { return trees.normals[i]->getValue(cell); };
+    if (!LeafOrientation{m(0), m(1), m(2), m(3), m(4)}.possible())
+      throw InvalidInput(ofCell("the second moments of leaf normals", cell) +
+                         ": must be a mean of n n^T over unit vectors n");
+  }
 }
 
 }  // namespace
 
-void DensityGrid::write(const fs::path& file, const std::string& source) const {
-  initializeOpenVdb();
-  writeWhole(file, [&](const fs::path& temporary) {
-    try {
-      openvdb::io::File out(temporary.string());
-      out.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK);  // densities of single leaves hardly compress further
-      out.write(openvdb::GridCPtrVec{describedGrid(*cells_, source)});
-      out.close();
-      std::string bytes = contents(temporary);
-      try {
-        findFloatGrid(bytes, kName);
-      } catch (const std::exception&) {  // OpenVDB does not tell when the disk is full
-        throw std::runtime_error("it did not arrive whole; is the disk full?");
-      }
-      seal(bytes);
-      std::fstream patch(temporary, std::ios::binary | std::ios::in | std::ios::out);
-      patch.write(bytes.data(), static_cast<std::streamsize>(kVdbHeader));
-      patch.close();
-      if (!patch) throw std::runtime_error(std::strerror(errno));
-    } catch (const std::exception& error) {
-      throw InvalidInput(file.string() + ": cannot be written: " + error.what());
-    }
-  });
-}
-
 DensityGrid DensityGrid::read(const fs::path& file) {
   initializeOpenVdb();
   try {
-    std::string bytes = contents(file);
-    checkSeal(bytes);
-    const VdbFloatGrid grid = findFloatGrid(bytes, kName);
-    validateTransform(grid);
-    openvdb::FloatTree::Ptr tree = readTree(std::move(bytes), grid);
-    validateValues(*tree);
-    return DensityGrid(
-        std::make_shared<const Cells>(std::move(tree), grid.scale.x, grid.translation - 0.5 * grid.scale.x));
+    Grids grids(contents(file));
+    DensityTrees trees = grids.trees();
+    validateValues(trees);
+    return DensityGrid(std::make_shared<const Cells>(std::move(trees), grids.cellSize(), grids.corner()));
   } catch (const InvalidInput& wrong) {
     throw InvalidInput(file.string() + ": " + wrong.what());
   } catch (const std::bad_alloc&) {

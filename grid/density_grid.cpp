@@ -3,8 +3,12 @@
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "grid/detail/density_cells.hpp"
@@ -12,25 +16,87 @@
 namespace sunfleck {
 namespace {
 
-using Leaf = openvdb::FloatTree::LeafNodeType;
+using openvdb::Coord;
+using openvdb::FloatTree;
+using Leaf = FloatTree::LeafNodeType;
 
-// Of the occupied part of a block of cells.
-struct Summary {
+std::vector<const Leaf*> blocksOf(const FloatTree& tree) {
+  std::vector<const Leaf*> blocks;
+  tree.getNodes(blocks);
+  return blocks;
+}
+
+// `part(block)` of each block of cells, computed in parallel, in the order of the tree: what is summed over them is the
+// same for any number of threads.
+template <typename Part>
+auto overBlocks(const FloatTree& tree, const Part& part) {
+  const std::vector<const Leaf*> blocks = blocksOf(tree);
+  std::vector<decltype(part(*blocks[0]))> parts(blocks.size());
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) { parts[i] = part(*blocks[i]); });
+  return parts;
+}
+
+// `visit(value, cells, box)` of each tile, a value that stands for many cells.
+template <typename Visit>
+void overTiles(const FloatTree& tree, const Visit& visit) {
+  auto tile = tree.cbeginValueAll();
+  tile.setMaxDepth(FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (*tile != 0.f) visit(*tile, static_cast<std::size_t>(tile.getVoxelCount()), tile.getBoundingBox());
+}
+
+// Of the occupied part of a tree.
+struct Occupied {
   std::size_t cells = 0;
-  double density = 0.;  // summed over the cells [1/m]
+  double sum = 0.;  // of the values of the cells
   openvdb::CoordBBox box;
+  bool tiles = false;
 };
 
-Summary summary(const Leaf& leaf) {
-  Summary found;
-  for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-    const float value = leaf.getValue(i);
-    if (value == 0.f) continue;
-    ++found.cells;
-    found.density += static_cast<double>(value);
-    found.box.expand(leaf.offsetToGlobalCoord(i));
+Occupied occupiedOf(const FloatTree& tree) {
+  Occupied all;
+  for (const Occupied& part : overBlocks(tree, [](const Leaf& leaf) {
+         Occupied found;
+         for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+           const float value = leaf.getValue(i);
+           if (value == 0.f) continue;
+           ++found.cells;
+           found.sum += static_cast<double>(value);
+           found.box.expand(leaf.offsetToGlobalCoord(i));
+         }
+         return found;
+       })) {
+    all.cells += part.cells;
+    all.sum += part.sum;
+    all.box.expand(part.box);
   }
-  return found;
+  overTiles(tree, [&](float value, std::size_t cells, const openvdb::CoordBBox& box) {
+    all.tiles = true;
+    all.cells += cells;
+    all.sum += static_cast<double>(value) * static_cast<double>(cells);
+    all.box.expand(box);
+  });
+  return all;
+}
+
+// How many columns of cells along z hold leaves.
+std::size_t occupiedColumns(const FloatTree& tree) {
+  std::map<std::pair<int, int>, std::uint64_t> columns;  // of each 8 x 8, those that do
+  for (const Leaf* leaf : blocksOf(tree)) {
+    std::uint64_t& mask = columns[{leaf->origin().x(), leaf->origin().y()}];
+    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+      if (leaf->getValue(i) != 0.f) mask |= std::uint64_t{1} << (i / Leaf::DIM);
+  }
+  std::size_t count = 0;
+  for (const auto& [place, mask] : columns) count += static_cast<std::size_t>(std::popcount(mask));
+  return count;
+}
+
+std::optional<Coord> cellAt(const DensityGrid::Cells& cells, glm::vec3 position) {
+  const glm::dvec3 cell = glm::floor((glm::dvec3(position) - cells.corner) / cells.cell_size);
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(cell[axis]) <= 0x1p30)) return {};
+  return Coord(int(cell.x), int(cell.y), int(cell.z));
 }
 
 }  // namespace
@@ -40,45 +106,67 @@ void initializeOpenVdb() {
   std::call_once(once, [] { openvdb::initialize(); });
 }
 
-DensityGrid::Cells::Cells(openvdb::FloatTree::Ptr densities, double side, const glm::dvec3& low)
-    : tree(std::move(densities)), cell_size(side), corner(low) {
-  std::vector<const Leaf*> leaves;
-  tree->getNodes(leaves);
-  std::vector<Summary> summaries(leaves.size());
-  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) { summaries[i] = summary(*leaves[i]); });
-
-  Summary all;
-  for (const Summary& part : summaries) {  // in the order of the tree: the same sum for any number of threads
-    all.cells += part.cells;
-    all.density += part.density;
-    all.box.expand(part.box);
+DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low)
+    : DensityTrees(std::move(trees)), cell_size(side), corner(low) {
+  const double volume = cell_size * cell_size * cell_size;
+  const Occupied leaves = occupiedOf(*density);
+  occupied = leaves.cells;
+  leaf_area = leaves.sum * volume;
+  if (!leaves.tiles) crown_area = static_cast<double>(occupiedColumns(*density)) * cell_size * cell_size;
+  if (wood) {
+    const Occupied blocked = occupiedOf(*wood);
+    wood_cells = blocked.cells;
+    wood_area = blocked.sum * volume;
   }
-  auto tile = std::as_const(*tree).cbeginValueAll();
-  tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) {
-    if (*tile == 0.f) continue;
-    all.cells += tile.getVoxelCount();
-    all.density += static_cast<double>(*tile) * static_cast<double>(tile.getVoxelCount());
-    all.box.expand(tile.getBoundingBox());
-  }
-
-  occupied = all.cells;
-  leaf_area = all.density * cell_size * cell_size * cell_size;
   if (occupied == 0) return;
-  const auto at = [&](const openvdb::Coord& cell) {
+  const auto at = [&](const Coord& cell) {
     return glm::vec3(corner + cell_size * glm::dvec3(cell.x(), cell.y(), cell.z()));
   };
-  box.include(at(all.box.min()));
-  box.include(at(all.box.max().offsetBy(1)));
+  box.include(at(leaves.box.min()));
+  box.include(at(leaves.box.max().offsetBy(1)));
+}
+
+LeafOrientation DensityGrid::Cells::orientation(const Coord& cell) const {
+  if (!normals[0] || density->getValue(cell) == 0.f) return {};
+  const auto moment = [&](std::size_t i) { return normals[i]->getValue(cell); };
+  return {moment(0), moment(1), moment(2), moment(3), moment(4)};
+}
+
+std::vector<DensityGrid::Cells::Named> DensityGrid::Cells::named() const {
+  std::vector<Named> all{{kDensityName, "1/m",
+                          "one-sided leaf area density: leaf area in a cell over the volume of the cell", density,
+                          occupied}};
+  if (normals[0])
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      const std::string axes = std::string(kNormalNames[i]).substr(7);
+      all.push_back({kNormalNames[i], "1",
+                     "second moment M_" + axes + " of leaf normals: mean of n_" + axes[0] + " n_" + axes[1] +
+                         " over the leaf area in a cell; M_zz = 1 - M_xx - M_yy",
+                     normals[i], occupied});
+    }
+  if (wood)
+    all.push_back({kWoodName, "1/m",
+                   "extinction by wood: its projected area in a cell, mean of all directions, over the "
+                   "volume of the cell",
+                   wood, wood_cells});
+  return all;
 }
 
 DensityGrid::DensityGrid(std::shared_ptr<const Cells> cells) : cells_(std::move(cells)) {}
 
 float DensityGrid::at(glm::vec3 position) const {
-  const glm::dvec3 cell = glm::floor((glm::dvec3(position) - cells_->corner) / cells_->cell_size);
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(std::abs(cell[axis]) <= 0x1p30)) return 0.f;
-  return cells_->tree->getValue(openvdb::Coord(int(cell.x), int(cell.y), int(cell.z)));
+  const auto cell = cellAt(*cells_, position);
+  return cell ? cells_->density->getValue(*cell) : 0.f;
+}
+
+LeafOrientation DensityGrid::orientationAt(glm::vec3 position) const {
+  const auto cell = cellAt(*cells_, position);
+  return cell ? cells_->orientation(*cell) : LeafOrientation{};
+}
+
+float DensityGrid::woodAt(glm::vec3 position) const {
+  const auto cell = cellAt(*cells_, position);
+  return cell && cells_->wood ? cells_->wood->getValue(*cell) : 0.f;
 }
 
 float DensityGrid::cellSize() const {
@@ -93,12 +181,48 @@ double DensityGrid::leafArea() const {
   return cells_->leaf_area;
 }
 
+double DensityGrid::projectedLeafArea(const Direction& s) const {
+  const Cells& cells = *cells_;
+  double sum = 0.;
+  for (const double part : overBlocks(*cells.density, [&](const Leaf& leaf) {
+         double projected = 0.;
+         for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+           if (const float density = leaf.getValue(i); density != 0.f)
+             projected += static_cast<double>(density) *
+                          static_cast<double>(cells.orientation(leaf.offsetToGlobalCoord(i)).projection(s));
+         return projected;
+       }))
+    sum += part;
+  overTiles(*cells.density, [&](float density, std::size_t count, const openvdb::CoordBBox& box) {
+    sum += static_cast<double>(density) * static_cast<double>(count) *
+           static_cast<double>(cells.orientation(box.min()).projection(s));
+  });
+  return sum * cells.cell_size * cells.cell_size * cells.cell_size;
+}
+
+double DensityGrid::projectedWoodArea() const {
+  return cells_->wood_area;
+}
+
+double DensityGrid::crownArea() const {
+  return cells_->crown_area;
+}
+
 std::size_t DensityGrid::memoryBytes() const {
-  return sizeof(Cells) + cells_->tree->memUsage();
+  std::size_t bytes = sizeof(Cells);
+  for (const Cells::Named& grid : cells_->named()) bytes += grid.tree->memUsage();
+  return bytes;
 }
 
 Bounds DensityGrid::occupied() const {
   return cells_->box;
+}
+
+std::vector<DensityGrid::Summary> DensityGrid::grids() const {
+  std::vector<Summary> all;
+  for (const Cells::Named& grid : cells_->named())
+    all.push_back({grid.name, grid.unit, grid.cells, static_cast<std::size_t>(grid.tree->memUsage())});
+  return all;
 }
 
 }  // namespace sunfleck

@@ -5,47 +5,74 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/bounds.hpp"
+#include "core/directions.hpp"
 #include "core/progress.hpp"
 #include "core/tree_mesh.hpp"
+#include "grid/leaf_orientation.hpp"
 
 namespace sunfleck {
 
-// (D1) One-sided leaf area density u_L [1/m] = [m^2 of leaf per m^3 of space] on a sparse grid of cubic cells: the
-// value of a cell is the leaf area inside it over its volume. Copies share their cells.
+// What a written grid tells about where it comes from.
+struct GridSource {
+  std::string name;     // what the leaves came from, such as a file
+  std::string hash;     // of their mesh; empty when it is not known
+  std::string program;  // that wrote the grid, with version and commit
+};
+
+// The leaves and the wood of a tree on sparse grids of the same cubic cells: (D1) one-sided leaf area density u_L [1/m]
+// = [m^2 of leaf per m^3 of space], the leaf area inside a cell over its volume; (D7) the second moments of the leaves'
+// normals; (D9) wood as an extinction [1/m]. Copies share their cells.
 class DensityGrid {
  public:
-  // Shares each leaf's area exactly among the cells it crosses, by clipping its triangles (D2). Cells lie at whole
-  // multiples of their side from the origin. The same grid to the bit for any number of threads.
+  // Shares each leaf's and each wood triangle's area exactly among the cells it crosses, by clipping its triangles
+  // (D2). Cells lie at whole multiples of their side from the origin. The same grids to the bit for any number of
+  // threads.
   //   cell_size  [m], 1e-6 .. 1e6
   // Throws InvalidInput when the tree would span more than 2^20 cells along an axis, reach beyond 2^30 cells from the
-  // origin, or need more than 2^30 shares or 8 GiB; std::runtime_error("interrupted") when `progress` says to stop.
+  // origin, or need more than 2^30 shares, 8 GiB or the memory there is; std::runtime_error("interrupted") when
+  // `progress` says to stop.
   static DensityGrid voxelize(const TreeMesh& mesh, float cell_size, const Progress& progress = {});
 
-  // Reads the grid named "density" of a .vdb file. Throws InvalidInput on a file that is missing, empty, cut short or
-  // corrupt, holds no such grid of floats, or holds a density that is negative or not finite. OpenVDB sees only what
-  // has been checked against the file's length: a hostile file costs memory in proportion to its length, which is 8 GiB
-  // at most.
+  // Reads the grid named "density" of a .vdb file and, where the file has them, the second moments "normal_xx" and so
+  // on and "wood". Throws InvalidInput on a file that is missing, empty, cut short or corrupt, holds no density or one
+  // of these that is not of floats, lies in other cells or has values that cannot be. OpenVDB sees only what has been
+  // checked against the file's length: a hostile file costs memory in proportion to its length, which is 8 GiB at most.
   static DensityGrid read(const std::filesystem::path& file);
 
-  // Writes a .vdb file other OpenVDB programs open, whole or not at all: a fog volume "density" with its units, leaf
-  // area and source in the metadata. Equal grids and sources make equal files. Throws InvalidInput when it cannot be
-  // written.
-  //   source  what the leaves came from
-  void write(const std::filesystem::path& file, const std::string& source) const;
+  // Writes all grids into one file, whole or not at all: a .vdb file that other OpenVDB programs open, fog volumes,
+  // "density" first, with units, leaf area and source in the metadata; or, where the name ends so, a .nvdb file for
+  // NanoVDB, which has no place for metadata. Equal grids and sources make equal files. Throws InvalidInput when it
+  // cannot be written.
+  void write(const std::filesystem::path& file, const GridSource& source) const;
 
   float at(glm::vec3 position) const;  // density of the cell that holds the position [1/m]; 0 outside
-  float cellSize() const;              // [m]
-  std::size_t occupiedCells() const;
-  double leafArea() const;  // integral of the density over space [m^2]
+  LeafOrientation orientationAt(glm::vec3 position) const;  // of that cell's leaves; all directions alike outside
+  float woodAt(glm::vec3 position) const;                   // wood's extinction in that cell [1/m]; 0 outside
+  float cellSize() const;                                   // [m]
+  std::size_t occupiedCells() const;                        // with leaves
+  double leafArea() const;                                  // integral of the density over space [m^2]
+  double projectedLeafArea(const Direction& s) const;       // integral of density times projection (D8) along s [m^2]
+  double projectedWoodArea() const;  // integral of wood's extinction: mean of all directions [m^2]
+  double crownArea() const;          // of the columns that hold leaves, seen from above [m^2]
   std::size_t memoryBytes() const;
-  Bounds occupied() const;  // box of the occupied cells [m]
+  Bounds occupied() const;  // box of the cells with leaves [m]
 
-  struct Cells;  // the OpenVDB grid; complete in density_grid.cpp alone
+  struct Summary {
+    std::string name, unit;
+    std::size_t cells, bytes;  // occupied; in memory
+  };
+  std::vector<Summary> grids() const;  // in the order in which they are written
+
+  struct Cells;  // the OpenVDB grids; complete in grid/detail alone
  private:
   explicit DensityGrid(std::shared_ptr<const Cells> cells);
   std::shared_ptr<const Cells> cells_;
 };
+
+// Tells meshes apart: a hash of their vertices and triangles as text, a UUID of version 5.
+std::string meshHash(const TreeMesh& mesh);
 
 }  // namespace sunfleck

@@ -228,8 +228,9 @@ struct Descriptor {
   std::uint64_t grid, values, end;  // [byte]
 };
 
-// The file's header, up to the descriptor of the grid called `name`. Those of grids lie between the grids.
-Descriptor findDescriptor(std::string_view bytes, std::string_view name, VdbFloatGrid& grid) {
+// The file's header, and the descriptor of the grid called `name` if there is one. Those of grids lie between the
+// grids.
+std::optional<Descriptor> findDescriptor(std::string_view bytes, std::string_view name, VdbFloatGrid& grid) {
   Cursor in(bytes);
   if (bytes.size() < sizeof kMagic || in.number<std::uint64_t>("") != kMagic) throw InvalidInput("is not a .vdb file");
   grid.file_version = in.number<std::uint32_t>("version");
@@ -263,15 +264,16 @@ Descriptor findDescriptor(std::string_view bytes, std::string_view name, VdbFloa
     }
     in = Cursor(bytes, descriptor.end);
   }
-  if (!found) throw InvalidInput("holds no grid named \"" + std::string(name) + "\"");
-  return *found;
+  return found;
 }
 
 }  // namespace
 
-VdbFloatGrid findFloatGrid(std::string_view bytes, std::string_view name) {
+std::optional<VdbFloatGrid> findFloatGrid(std::string_view bytes, std::string_view name) {
   VdbFloatGrid grid;
-  const Descriptor descriptor = findDescriptor(bytes, name, grid);
+  const std::optional<Descriptor> found = findDescriptor(bytes, name, grid);
+  if (!found) return {};
+  const Descriptor& descriptor = *found;
   constexpr std::string_view type = "Tree_float_5_4_3", half = "_HalfFloat";
   if (!descriptor.type.starts_with(type) ||
       (descriptor.type.size() > type.size() && descriptor.type.substr(type.size()) != half))

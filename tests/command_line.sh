@@ -128,6 +128,10 @@ refuses "rotation" render rotated.toml -o x.png
 refuses "period" validate leaf.obj --period 0.01 0.01
 refuses "--only-picture" trace leaf.obj --only-picture -o x.csv
 refuses "/dev/null" voxelize leaf.obj -o /dev/null
+for ending in vdb nvdb; do  # files of some 100 KB and more, where only 20 KB may be written: as on a full disk
+  (trap '' XFSZ; ulimit -f 20; failures=0; refuses "cannot be written" voxelize leaf.obj -o full.$ending --cell-size 0.1
+   [ $failures -eq 0 ]) || failures=$((failures + 1))
+done
 refuses "albedo" trace leaf.obj --albedo 1.0000001
 
 # The slab's options: values out of range, files that are wrong, and options that do not go together.
@@ -241,6 +245,8 @@ does "reflectance" slab --omega 1 --thickness 5
 does "1 leaf and 0 wood" plant flat.obj
 does "cells" voxelize leaf.obj -o leaf.vdb --cell-size 0.1
 does "cells" voxelize leaf.vdb
+does "normal_xx" voxelize leaf.obj -o leaf.nvdb --cell-size 0.1
+does '"name": "density"' voxelize leaf.vdb --json
 does '"absorbed_leaves"' trace leaf.obj --paths 1000 --json
 does '"models"' --json leaf.obj --paths 1000 --no-pictures -o report
 does "wrote" validate leaf.obj --paths 1000 --no-pictures -o report

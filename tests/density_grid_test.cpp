@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "core/random.hpp"
@@ -188,6 +189,21 @@ TEST(D1_DensityGrid, RefusesCellSizesThatCannotBe) {
   const TreeMesh far = oneTriangle({9e3f, 0.f, 0.f}, {9e3f + 1.f, 0.f, 0.f}, {9e3f, 1.f, 0.f});
   EXPECT_THROW(DensityGrid::voxelize(far, 2e-6f), InvalidInput);  // 4.5e9 cells from the origin
   EXPECT_THROW(DensityGrid::voxelize(TreeMesh{}, .1f), InvalidInput);
+}
+
+// Check that cells are refused before they are made when they would take more than 8 GiB, with the figure: a leaf of
+// half a square of 14,000 cells a side crosses 1.5 million blocks, of 6 grids of 2 KiB each and more.
+TEST(D1_DensityGrid, RefusesMoreMemoryThanThereIs) {
+  const TreeMesh mesh = oneTriangle({0.f, 0.f, 0.f}, {14.f, 0.f, 0.f}, {0.f, 14.f, 0.f});
+  try {
+    DensityGrid::voxelize(mesh, .001f);
+    FAIL();
+  } catch (const InvalidInput& wrong) {
+    const std::string line = wrong.what();
+    EXPECT_NE(line.find("cell size [m] = 0.001: must be so large that the grids take less memory: "), line.npos)
+        << line;
+    EXPECT_NE(line.find(" GB, of "), line.npos) << line;
+  }
 }
 
 TEST(D1_DensityGrid, TellsProgressAndStopsWhenAsked) {

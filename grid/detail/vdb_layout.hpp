@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string_view>
 
 namespace sunfleck {
@@ -22,7 +23,8 @@ struct VdbFloatGrid {
 // Walks the bytes of a .vdb file along the one grid called `name` and checks that every size, count and offset in it
 // holds within the file, so that OpenVDB 10, which trusts them, may read the grid's tree: what it allocates is then
 // bounded by the length of the file, and nothing is read or written out of bounds. Formats 222 to 224, as OpenVDB 2 and
-// later write. Throws InvalidInput("<what is wrong>"), which the caller completes with the file's name.
-VdbFloatGrid findFloatGrid(std::string_view bytes, std::string_view name);
+// later write. Nothing when the file holds no grid of that name. Throws InvalidInput("<what is wrong>"), which the
+// caller completes with the file's name.
+std::optional<VdbFloatGrid> findFloatGrid(std::string_view bytes, std::string_view name);
 
 }  // namespace sunfleck
