@@ -9,6 +9,7 @@
 #include "apps/number_text.hpp"
 #include "apps/slab_files.hpp"
 #include "core/require.hpp"
+#include "spp/stream_constants.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -186,7 +187,12 @@ SlabQuestion slabQuestion(const SlabOptions& options) {
 }
 
 void requireCapable(const SlabModel& model, const SlabQuestion& question) {
-  if (takes(model, question.setup)) return;
+  if (takes(model, question.setup)) {
+    if (model.scope == SlabScope::slab_under_beam)
+      require(question.setup.problem.beam->mu0 >= spp::kLeastCosine, "mu0", question.setup.problem.beam->mu0,
+              fmt::format("at least {:g} for the model {}", spp::kLeastCosine, model.name));
+    return;
+  }
   throw InvalidInput(fmt::format("model = {}: must be pp for {}", model.name,
                                  model.scope == SlabScope::henyey_greenstein
                                      ? "moments, layers, leaves, a ground or a sky"

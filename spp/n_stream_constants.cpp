@@ -143,7 +143,8 @@ StreamConstants nStreamConstants(const BeamInMedium& beam, int streams, int azim
     StreamConstants whole = constants;
     if (addParticles(whole, system, azimuth_orders, detail::ScaledPhase::delta(*particles, streams))) return whole;
     if (!addParticles(constants, system, azimuth_orders, detail::ScaledPhase::smoothed(*particles, streams)))
-      throw InvalidInput(std::to_string(streams) + " streams: must be more, for a phase function as sharp as this");
+      throw InvalidInput("streams = " + std::to_string(streams) +
+                         ": must be more, for a phase function as sharp as this");
   } else {
     addLeaves(constants, system, azimuth_orders);
   }

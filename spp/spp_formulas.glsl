@@ -47,12 +47,19 @@ SHARED_FN Number directPower(Number depth, Number mu0) {
   return exp(-depth / mu0);
 }
 
+// A depth, the nearer face for what lies outside, in a slab that counts as w thick. One without end has a w too, to whose
+// face no depth but infinity may come near.
+SHARED_FN Number depthWithin(Number depth, Number thickness, Number w) {
+  Number deepest = select(w < thickness, select(depth < thickness, Number(1.0e-7f) * w, w), w);
+  return min(max(depth, Number(0.0f)), deepest);
+}
+
 // (S2) SPP, Shinya et al. 2013 Eqs. 11 to 22 in a form whose every exponent is negative and that has no pole at
 // albedo 1, where its exponent k is 0.
 SHARED_FN SlabPowers sppPowers(Number depth, Number thickness, Number mu0, Number albedo, Number forward_share) {
   Number backward_share = Number(1.0f) - forward_share;
   Number w = min(thickness, Number(1.0e30f));  // as good as infinite, and its products are still numbers
-  Number z = min(max(depth, Number(0.0f)), w);
+  Number z = depthWithin(depth, thickness, w);
   Number rest = w - z;
   Number lost = Number(1.0f) - albedo;
   Number gamma = lost + albedo * backward_share;  // 1 - omega T

@@ -51,7 +51,7 @@ struct ModeField {
 // True depth and thickness; what lies outside the slab counts as its face.
 SHARED_FN SlabPlace slabPlace(Number depth, Number thickness, Number depth_scale, Number beam_rate) {
   Number w = min(thickness, Number(1.0e30f));
-  Number z = min(max(depth, Number(0.0f)), w);
+  Number z = depthWithin(depth, thickness, w);
   SlabPlace place;
   place.depth = z * depth_scale;
   place.rest = (w - z) * depth_scale;
@@ -281,12 +281,4 @@ SHARED_FN Number streamRadiance(SHARED_IN(StreamModes) modes, SHARED_IN(ModeWeig
     radiance += seen.sum[j] * mean.sum + seen.difference[j] * mean.difference;
   }
   return radiance;
-}
-
-// Henyey and Greenstein's phase function over that of isotropic scattering, 4 pi p, at the cosine of the scattering
-// angle  [1].
-SHARED_FN Number henyeyGreenstein(Number asymmetry, Number cosine) {
-  Number base = (Number(1.0f) - asymmetry) * (Number(1.0f) - asymmetry) +
-                Number(2.0f) * asymmetry * (Number(1.0f) - cosine);
-  return (Number(1.0f) - asymmetry * asymmetry) / (base * sqrt(base));
 }

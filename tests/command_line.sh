@@ -207,6 +207,7 @@ refuses "nowhere" slab --plot nowhere/x.svg
 refuses "folder" bench slab -o empty/folder
 refuses "frobnicate" bench frobnicate
 refuses "must not be empty" bench slab -o ""
+refuses "mu0 = 1e-50: must be" slab --model twostream --mu0 1e-50
 refuses "nosuch" bench directions nosuch -o dirs
 refuses "even" validate cherry --directions 7 -o dirs
 refuses "--frobnicate" tables --frobnicate

@@ -109,7 +109,7 @@ TEST(S8_ForwardShare, OfMomentsIsThatOfTheirFunction) {
 }
 
 // Check the shares of leaves against the integral of their exact scattering over the forward half, and the mean's
-// definition. The midpoint rule over 200 x 100 directions is right to 1e-4 of a kernel with kinks.
+// definition. The midpoint rule over 60 x 60 directions is right to 1e-4 of a kernel with kinks.
 TEST(S8_ForwardShare, OfLeavesIsTheIntegralOfTheirScattering) {
   for (const auto& [name, medium] : leaves(0.6, 0.3)) {
     const auto& scatterers = std::get<LeafScattering>(medium);

@@ -110,7 +110,7 @@ void refinedRadianceOf(const Places& places, const StreamNumbers& numbers, const
                        : refinedRadianceAlong<kStreams, false>(places, numbers, view, radiance);
 }
 
-// Calls the function for the number of streams, one of kArrayStreams.
+// Calls the function for the number of streams, one of StreamArrays::kStreams.
 #define SUNFLECK_FOR_STREAMS(function, streams, ...) \
   switch (streams) {                                 \
     case 1:                                          \
