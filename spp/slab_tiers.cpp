@@ -29,11 +29,11 @@ constexpr SlabTier oneStream(std::string_view name, SlabForm form, double power_
 }
 
 // Medians of five runs of `sunfleck bench slab`, fifteen rounds each in which all take turns, on an AMD EPYC with
-// AVX-512 that ran other programs too; ratios of different runs were within 4 %. Direct light, one of SPP's
-// exponentials, is not in that race: estimated.
+// AVX-512 that ran other programs too; ratios of different runs were within 4 %. Direct light, which is not in that
+// race: one exponential, by bench_spp.
 // clang-format off: a line for each
 constexpr std::array<SlabTier, kSlabTiers> kTiers{
-    oneStream("ss", SlabForm::kDirect, 0.3, 0.3, 0),
+    oneStream("ss", SlabForm::kDirect, 0.2, 0.2, 0),
     oneStream("spp", SlabForm::kSpp, 1., 1.2, 1),
     oneStream("sppr", SlabForm::kRefinedSpp, 1., 2.5, 1),
     oneStream("twostream", SlabForm::kTwoStream, 1.8, 2.5, 3),
