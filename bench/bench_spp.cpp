@@ -200,7 +200,7 @@ void copy(benchmark::State& state) {
 }
 BENCHMARK(copy);
 
-// And the exponentials that it takes: 3 for SPP, 2 n + 2 for n streams, 2 n + 3 for their radiance.
+// And the exponentials that it takes: 1 for direct light, 3 for SPP, 2 n + 2 for n streams, 2 n + 3 for their radiance.
 void exponentials(benchmark::State& state) {
   auto sum = spp::baseline::sumExponentials;
 #ifdef SUNFLECK_X86
@@ -219,6 +219,6 @@ void exponentials(benchmark::State& state) {
   if (!right) return state.SkipWithError("wrong answer");
   leaves.time(state, evaluate);
 }
-BENCHMARK(exponentials)->ArgName("count")->Arg(3)->Arg(6)->Arg(7);
+BENCHMARK(exponentials)->ArgName("count")->Arg(1)->Arg(3)->Arg(6)->Arg(7);
 
 }  // namespace

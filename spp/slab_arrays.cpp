@@ -23,6 +23,12 @@ void sppPowers(std::span<const float> depth, std::span<const float> thickness, f
   detail::arrayKernel().sppPowers(places(depth, thickness), mu0, albedo, forward_share, down.data(), up.data());
 }
 
+void sppRadiance(std::span<const float> depth, std::span<const float> thickness, float mu0, float albedo,
+                 float forward_share, std::span<float> down, std::span<float> up) {
+  assert(down.size() == depth.size() && up.size() == depth.size());
+  detail::arrayKernel().sppRadiance(places(depth, thickness), mu0, albedo, forward_share, down.data(), up.data());
+}
+
 StreamArrays::StreamArrays(const StreamConstants& constants)
     : any_slab_(constants, 1.f),
       streams_(constants.streams()),

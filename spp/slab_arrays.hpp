@@ -19,6 +19,10 @@ namespace sunfleck::spp {
 void sppPowers(std::span<const float> depth, std::span<const float> thickness, float mu0, float albedo,
                float forward_share, std::span<float> down, std::span<float> up);
 
+// (S3) Diffuse radiance of SPP, downward and upward, alike in all directions of a half [1/sr].
+void sppRadiance(std::span<const float> depth, std::span<const float> thickness, float mu0, float albedo,
+                 float forward_share, std::span<float> down, std::span<float> up);
+
 // A closed form of 1, 2, 3, 4 or 8 streams in slabs of one medium under one beam.
 class StreamArrays {
  public:

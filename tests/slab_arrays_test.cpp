@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -66,6 +67,20 @@ TEST(S2_SppArrays, AreThePowersOfEachPlace) {
     }
     EXPECT_EQ(down.back(), -7.f);
     EXPECT_EQ(up.back(), -7.f);
+  }
+}
+
+// Check the radiance of each half, also at places beyond the face, where the direct light is that at the face.
+TEST(S3_SppArrays, AreTheRadianceOfEachPlace) {
+  const Places places(77);
+  std::vector<float> down(77), up(77);
+  sppRadiance(places.depth, places.thickness, 0.3f, 0.9f, 0.6f, down, up);
+  for (std::size_t i = 0; i < down.size(); ++i) {
+    const double thickness = double{places.thickness[i]}, depth = std::min(double{places.depth[i]}, thickness);
+    const auto powers = precise::sppPowers(depth, thickness, double{0.3f}, double{0.9f}, double{0.6f});
+    const auto exact = precise::sppDiffuseRadiance(powers, precise::directPower(depth, double{0.3f}));
+    EXPECT_NEAR(double{down[i]}, exact.down, kTolerance);
+    EXPECT_NEAR(double{up[i]}, exact.up, kTolerance);
   }
 }
 

@@ -253,7 +253,8 @@ TEST(LogPlot, MovesMarksAsideAndNamesUnits) {
 }
 
 // Check that a file of measurements has a line for each and the header's number of fields, that a table, which has no
-// fluxes, leaves its field empty, and that the plot has each point where it belongs.
+// fluxes, leaves its field empty, as all but the exact solver leave that of batches, and that the plot has each point
+// where it belongs.
 TEST(SlabBench, WritesALineForEachRow) {
   SlabBench bench{.machine = "this one", .rows = {}};
   for (const char* kind : {"closed form", "exact", "table"})
@@ -267,11 +268,13 @@ TEST(SlabBench, WritesALineForEachRow) {
                           .flux_error = kind[0] == 't' ? std::numeric_limits<double>::quiet_NaN() : 0.2,
                           .radiance_error = 0.01});
   bench.rows[0].own_powers = false;
+  bench.rows[1].batch_seconds = 1e-7;
   const std::string csv = slabBenchCsv(bench);
   EXPECT_EQ(count(csv, "\n"), 4u);
-  EXPECT_EQ(count(csv, ","), 4u * 8u);
-  EXPECT_NE(csv.find("table,table,4,0,1e-06,0.1,,1e-05,0.01"), std::string::npos) << csv;
-  EXPECT_EQ(count(slabBenchPlot(bench), "<circle"), 5u);  // the closed form's powers are those of another
+  EXPECT_EQ(count(csv, ","), 4u * 9u);
+  EXPECT_NE(csv.find("table,table,4,0,1e-06,0.1,,1e-05,0.01,\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("exact,exact,4,0,1e-06,0.1,0.2,1e-05,0.01,1e-07\n"), std::string::npos) << csv;
+  EXPECT_EQ(count(slabBenchPlot(bench), "<circle"), 7u);  // the closed form's powers and fluxes are those of another
 }
 
 // Check that every contestant's answer is near the exact one on the course, each by what it is good for: the worst

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "render/compare/detail/svg_text.hpp"
 
@@ -14,8 +15,8 @@ namespace {
 
 constexpr double kPanelWidth = 660., kPanelHeight = 520.;
 constexpr double kLeft = 74., kRight = 640., kTop = 40., kBottom = 460.;  // of the plotted area within its panel
-constexpr double kHeader = 66.;                                           // title and subtitle
-constexpr double kRadius = 4., kMarkSize = 12., kLegendLine = 18.;
+constexpr double kHeader = 48.;                                           // title and what stays free below
+constexpr double kRadius = 4., kMarkSize = 12., kLegendLine = 18., kSubtitleLine = 18.;
 
 // An axis over whole decades.
 struct LogAxis {
@@ -199,18 +200,24 @@ std::string drawn(const LogPanel& panel) {
 
 std::string logPlot(const std::string& title, const std::string& subtitle, const std::vector<LogPanel>& panels,
                     int columns) {
+  const auto lines = static_cast<double>(1 + std::ranges::count(subtitle, '\n'));
+  const double header = kHeader + lines * kSubtitleLine;
   const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-  const double width = columns * kPanelWidth, height = kHeader + rows * kPanelHeight;
+  const double width = columns * kPanelWidth, height = header + rows * kPanelHeight;
   std::string svg = fmt::format(
       R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0} {1}" width="{0}" height="{1}" role="img" )"
       R"(font-family="sans-serif" font-size="12"><rect width="{0}" height="{1}" fill="white"/>)",
       width, height);
-  svg += svgText(kLeft, 28., "start", title, R"( font-size="18")") +
-         svgText(kLeft, 50., "start", subtitle, R"( fill="#555")");
+  svg += svgText(kLeft, 28., "start", title, R"( font-size="18")");
+  double y = 50.;
+  for (const auto line : std::views::split(subtitle, '\n')) {
+    svg += svgText(kLeft, y, "start", std::string(line.begin(), line.end()), R"( fill="#555")");
+    y += kSubtitleLine;
+  }
   for (std::size_t i = 0; i < panels.size(); ++i)
     svg += fmt::format(R"svg(<g transform="translate({} {})">)svg",
                        static_cast<double>(i % static_cast<std::size_t>(columns)) * kPanelWidth,
-                       kHeader + static_cast<double>(i / static_cast<std::size_t>(columns)) * kPanelHeight) +
+                       header + static_cast<double>(i / static_cast<std::size_t>(columns)) * kPanelHeight) +
            drawn(panels[i]) + "</g>";
   return svg + "</svg>\n";
 }

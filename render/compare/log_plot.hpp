@@ -22,7 +22,8 @@ struct LogPanel {
   std::vector<LogCurve> curves;
 };
 // Panels in rows of `columns`, each with its own axes over whole decades and its own legend, which stands at the lower
-// left: where points fall from the upper left to the lower right. Marks give way to points and to each other.
+// left: where points fall from the upper left to the lower right. Marks give way to points and to each other. The
+// subtitle may have several lines.
 std::string logPlot(const std::string& title, const std::string& subtitle, const std::vector<LogPanel>& panels,
                     int columns);
 

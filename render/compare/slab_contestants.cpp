@@ -1,16 +1,20 @@
 #include "render/compare/slab_contestants.hpp"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 
 #include "pp_solver/slab_table.hpp"
 #include "pp_solver/solver.hpp"
 #include "render/compare/slab_models.hpp"
 #include "scattering/double_gauss.hpp"
 #include "spp/forward_share.hpp"
+#include "spp/slab_arrays.hpp"
 #include "spp/slab_tiers.hpp"
 #include "spp/stream_slab.hpp"
 
@@ -19,7 +23,6 @@ namespace {
 
 using std::numbers::pi;
 using Answer = SlabContestant::Answer;
-using Slab = spp::StreamSlab<float>;
 
 void add(Answer& answer, double powers, double flux_down, double flux_up) {
   answer.powers.push_back(powers);
@@ -27,104 +30,120 @@ void add(Answer& answer, double powers, double flux_down, double flux_up) {
   answer.flux_up.push_back(flux_up);
 }
 
-class SppContestant : public SlabContestant {
+// Blocks of places of one medium and beam, as a renderer evaluates leaves; depth and slab of each place are new to it.
+class TierContestant : public SlabContestant {
  public:
-  explicit SppContestant(const SlabCourse& course) : SlabContestant(course) {
-    for (const pp::SlabCase& slab : course.slabs) {
-      const auto forward_share = static_cast<float>(spp::forwardShare(slab.asymmetry, slab.mu0));
-      for (const double share : course.shares)
-        places_.push_back({static_cast<float>(share * slab.thickness), static_cast<float>(slab.thickness),
-                           static_cast<float>(slab.mu0), static_cast<float>(slab.albedo), forward_share});
-    }
-  }
-  Answer answer() override {
-    Answer answer;
-    for (const Place& place : places_) {
-      const spp::SlabPowers powers = at(place);
-      add(answer, powers.down + powers.up, powers.down, powers.up);
-      const auto radiance = spp::sppDiffuseRadiance(powers, spp::directPower(place.depth, place.mu0));
-      for (const double mu : course_.mus)
-        answer.radiances.insert(answer.radiances.end(), course_.phis.size(), mu > 0. ? radiance.down : radiance.up);
-    }
-    return answer;
-  }
-  std::size_t evaluatePowers() override {
-    float sum = 0.F;
-    for (const Place& place : places_) sum += at(place).down;
-    kept_ = sum;
-    return places_.size();
-  }
-  std::size_t evaluateRadiances() override {
-    float sum = 0.F;
-    for (const Place& place : places_)
-      sum += spp::sppDiffuseRadiance(at(place), spp::directPower(place.depth, place.mu0)).down;
-    kept_ = sum;
-    return places_.size();
-  }
-
- private:
-  struct Place {
-    float depth, thickness, mu0, albedo, forward_share;
-  };
-  static spp::SlabPowers at(const Place& place) {
-    return spp::sppPowers(place.depth, place.thickness, place.mu0, place.albedo, place.forward_share);
-  }
-  std::vector<Place> places_;
-};
-
-class StreamContestant : public SlabContestant {
- public:
-  StreamContestant(const SlabCourse& course, const spp::SlabTier& tier) : SlabContestant(course) {
-    for (const pp::SlabCase& slab : course.slabs) {
-      const spp::StreamConstants constants = constantsOf(tier, slab);
-      Ready ready{Slab(constants, static_cast<float>(slab.thickness)), {}, {}};
-      for (const double share : course.shares) ready.depths.push_back(static_cast<float>(share * slab.thickness));
-      for (const double mu : course.mus)
-        for (const double phi : course.phis) ready.views.push_back(ready.slab.view(mu, phi));
-      slabs_.push_back(std::move(ready));
-    }
-  }
-  Answer answer() override {
-    Answer answer;
-    for (std::size_t i = 0; i < slabs_.size(); ++i)
-      for (const float depth : slabs_[i].depths) {
-        const auto light = slabs_[i].slab.light(depth);
-        const double mu0 = course_.slabs[i].mu0;
-        add(answer, light.power_down + light.power_up, double{light.flux_down} / mu0, double{light.flux_up} / mu0);
-        for (const Slab::View& view : slabs_[i].views)
-          answer.radiances.push_back(slabs_[i].slab.refinedRadiance(depth, view));
+  TierContestant(const SlabCourse& course, const spp::SlabTier& tier)
+      : SlabContestant(course), form_(tier.form), first_(kBlockSize), second_(kBlockSize) {
+    for (std::size_t i = 0; i < course.slabs.size(); ++i) {
+      const pp::SlabCase& slab = course.slabs[i];
+      Block& block = blockOf(slab, tier);
+      for (std::size_t d = 0; d < course.shares.size(); ++d) {
+        block.course_places.push_back(i * course.shares.size() + d);
+        block.thickness.push_back(static_cast<float>(slab.thickness));
+        block.depth.push_back(static_cast<float>(course.shares[d] * slab.thickness));
       }
+    }
+    for (Block& block : blocks_)
+      for (std::size_t i = 0; block.depth.size() < kBlockSize; ++i) {
+        block.thickness.push_back(block.thickness[i]);
+        block.depth.push_back(block.depth[i]);
+      }
+  }
+
+  Answer answer() override {
+    const std::size_t directions = course_.directions();
+    Answer answer{.powers = std::vector<double>(course_.places()),
+                  .flux_down = answer.powers,
+                  .flux_up = answer.powers,
+                  .radiances = std::vector<double>(course_.places() * directions)};
+    for (const Block& block : blocks_) {
+      powers(block);
+      for (std::size_t i = 0; i < block.course_places.size(); ++i) {
+        const std::size_t place = block.course_places[i];
+        answer.powers[place] = double{first_[i]} + double{second_[i]};
+        answer.flux_down[place] = double{first_[i]};
+        answer.flux_up[place] = double{second_[i]};
+        if (hasSppPowers()) continue;
+        const auto light = spp::StreamSlab<float>(block.constants, block.thickness[i]).light(block.depth[i]);
+        answer.flux_down[place] = double{light.flux_down} / block.of.mu0;
+        answer.flux_up[place] = double{light.flux_up} / block.of.mu0;
+      }
+      for (std::size_t j = 0; j < directions; ++j) {
+        const std::vector<float>& found = radiance(block, j);
+        for (std::size_t i = 0; i < block.course_places.size(); ++i)
+          answer.radiances[block.course_places[i] * directions + j] = double{found[i]};
+      }
+    }
     return answer;
   }
   std::size_t evaluatePowers() override {
-    float sum = 0.F;
-    for (const Ready& ready : slabs_)
-      for (const float depth : ready.depths) sum += ready.slab.light(depth).power_down;
-    kept_ = sum;
-    return course_.places();
+    for (const Block& block : blocks_) {
+      powers(block);
+      kept_ = double{first_[block.course_places.size()]};
+    }
+    return blocks_.size() * kBlockSize;
   }
+  // In one direction of each half for each block.
   std::size_t evaluateRadiances() override {
-    float sum = 0.F;
-    for (const Ready& ready : slabs_)
-      for (std::size_t d = 0; d < ready.depths.size(); ++d)
-        sum += ready.slab.refinedRadiance(ready.depths[d], ready.views[d * 13 % ready.views.size()]);
-    kept_ = sum;
-    return course_.places();
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      for (std::size_t half = 0; half < 2; ++half)
+        kept_ = double{radiance(blocks_[b], ((2 * b + half) * course_.phis.size() + b) % course_.directions())[b]};
+    return 2 * blocks_.size() * kBlockSize;
   }
 
  private:
-  static spp::StreamConstants constantsOf(const spp::SlabTier& tier, const pp::SlabCase& slab) {
-    const spp::BeamInMedium medium{slab.asymmetry, slab.albedo, slab.mu0};
-    if (tier.form == spp::SlabForm::kRefinedSpp) return spp::sppConstants(medium);
-    if (tier.form == spp::SlabForm::kTwoStream) return spp::twoStreamConstants(medium);
-    return spp::nStreamConstants(medium, tier.streams, tier.azimuth_orders);
-  }
-  struct Ready {
-    Slab slab;
-    std::vector<float> depths;
-    std::vector<Slab::View> views;
+  static constexpr std::size_t kBlockSize = 960;  // what is read and written stays in the nearest cache
+  struct Block {
+    pp::SlabCase of;  // its medium and beam
+    float forward_share;
+    spp::StreamConstants constants;
+    spp::StreamArrays arrays;
+    std::vector<spp::StreamArrays::View> views;  // of the course's directions
+    std::vector<std::size_t> course_places;      // the first places are these of the course; they recur after
+    std::vector<float> depth, thickness;
   };
-  std::vector<Ready> slabs_;
+
+  Block& blockOf(const pp::SlabCase& slab, const spp::SlabTier& tier) {
+    for (Block& block : blocks_)
+      if (block.of.asymmetry == slab.asymmetry && block.of.albedo == slab.albedo && block.of.mu0 == slab.mu0)
+        return block;
+    const spp::StreamConstants constants = constantsOf(tier, {slab.asymmetry, slab.albedo, slab.mu0});
+    blocks_.push_back({.of = slab,
+                       .forward_share = static_cast<float>(spp::forwardShare(slab.asymmetry, slab.mu0)),
+                       .constants = constants,
+                       .arrays = spp::StreamArrays(constants)});
+    for (const double mu : course_.mus)
+      for (const double phi : course_.phis) blocks_.back().views.push_back(blocks_.back().arrays.view(mu, phi));
+    return blocks_.back();
+  }
+  static spp::StreamConstants constantsOf(const spp::SlabTier& tier, const spp::BeamInMedium& beam) {
+    if (tier.form == spp::SlabForm::kStreams) return spp::nStreamConstants(beam, tier.streams, tier.azimuth_orders);
+    return tier.form == spp::SlabForm::kTwoStream ? spp::twoStreamConstants(beam) : spp::sppConstants(beam);
+  }
+  bool hasSppPowers() const { return form_ == spp::SlabForm::kSpp || form_ == spp::SlabForm::kRefinedSpp; }
+
+  // P+ and P- of the block's places into first_ and second_.
+  void powers(const Block& block) {
+    if (hasSppPowers())
+      spp::sppPowers(block.depth, block.thickness, static_cast<float>(block.of.mu0),
+                     static_cast<float>(block.of.albedo), block.forward_share, first_, second_);
+    else
+      block.arrays.powers(block.depth, block.thickness, first_, second_);
+  }
+  const std::vector<float>& radiance(const Block& block, std::size_t direction) {
+    if (form_ == spp::SlabForm::kSpp) {
+      spp::sppRadiance(block.depth, block.thickness, static_cast<float>(block.of.mu0),
+                       static_cast<float>(block.of.albedo), block.forward_share, first_, second_);
+      return course_.mus[direction / course_.phis.size()] > 0. ? first_ : second_;
+    }
+    block.arrays.refinedRadiance(block.depth, block.thickness, block.views[direction], first_);
+    return first_;
+  }
+
+  spp::SlabForm form_;
+  std::vector<Block> blocks_;
+  std::vector<float> first_, second_;  // what is computed for a block
 };
 
 class TableContestant : public SlabContestant {
@@ -173,10 +192,12 @@ class TableContestant : public SlabContestant {
   std::vector<Place> places_;
 };
 
-// Solves anew for each evaluation, as each fragment has a slab of its own.
+// Solves anew for each evaluation, as each fragment has a slab of its own; in a batch, for each slab.
 class ExactContestant : public SlabContestant {
  public:
-  ExactContestant(const SlabCourse& course, int streams) : SlabContestant(course), solver_({.streams = streams}) {
+  ExactContestant(const SlabCourse& course, int streams)
+      : SlabContestant(course), streams_(streams), solver_({.streams = streams}) {
+    for (std::size_t i = 0; i < kBatch; ++i) batch_.push_back(course.slabs[i % course.slabs.size()]);
     for (const pp::SlabCase& slab : course.slabs) problems_.push_back(homogeneousSlab(slab).problem);
   }
   Answer answer() override {
@@ -193,6 +214,14 @@ class ExactContestant : public SlabContestant {
       std::vector<double> radiances(depths.size() * course_.directions());
       solver_.radiances(depths, course_.mus, course_.phis, radiances);
       answer.radiances.insert(answer.radiances.end(), radiances.begin(), radiances.end());
+    }
+    evaluateBatch();
+    for (std::size_t i = 0; i < problems_.size(); ++i) {
+      const std::size_t lit_face = i * course_.shares.size(), other_face = lit_face + course_.shares.size() - 1;
+      // Both sum in different orders; what is left apart in a slab as tame as these is rounding.
+      if (!(std::abs(solved_[i].reflectance - answer.flux_up[lit_face]) < 1e-9 &&
+            std::abs(solved_[i].transmittance - answer.flux_down[other_face]) < 1e-9))
+        throw std::runtime_error(fmt::format("pp:{}: a batch differs from one slab after another", streams_));
     }
     return answer;
   }
@@ -214,10 +243,20 @@ class ExactContestant : public SlabContestant {
     kept_ = sum;
     return problems_.size();
   }
+  std::size_t evaluateBatch() override {
+    one_thread_.execute([&] { pp::solveSlabs(batch_, solved_, streams_); });
+    kept_ = solved_.back().reflectance;
+    return kBatch;
+  }
 
  private:
+  static constexpr std::size_t kBatch = 48;  // fills all lanes
+  int streams_;
   pp::Solver solver_;
   std::vector<pp::Problem> problems_;
+  std::vector<pp::SlabCase> batch_;
+  std::vector<pp::SlabFluxes> solved_ = std::vector<pp::SlabFluxes>(kBatch);
+  tbb::task_arena one_thread_{1};
 };
 
 }  // namespace
@@ -240,8 +279,7 @@ SlabCourse slabCourse() {
 }
 
 std::unique_ptr<SlabContestant> tierContestant(const SlabCourse& course, const spp::SlabTier& tier) {
-  if (tier.form == spp::SlabForm::kSpp) return std::make_unique<SppContestant>(course);
-  return std::make_unique<StreamContestant>(course, tier);
+  return std::make_unique<TierContestant>(course, tier);
 }
 
 std::unique_ptr<SlabContestant> exactContestant(const SlabCourse& course, int streams) {

@@ -38,6 +38,8 @@ class SlabContestant {
   // The work that is timed: evaluations at one depth, of P+ and P-, or of radiance in one direction. Returns how many.
   virtual std::size_t evaluatePowers() = 0;
   virtual std::size_t evaluateRadiances() = 0;
+  // Of the fluxes at the faces of one of many slabs that are solved together, on one thread. 0: cannot.
+  virtual std::size_t evaluateBatch() { return 0; }
 
  protected:
   const SlabCourse& course_;

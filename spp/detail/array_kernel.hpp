@@ -31,6 +31,7 @@ struct ViewNumbers {
 
 struct ArrayKernel {
   void (*sppPowers)(const Places&, float mu0, float albedo, float forward_share, float* down, float* up);
+  void (*sppRadiance)(const Places&, float mu0, float albedo, float forward_share, float* down, float* up);
   void (*streamPowers)(const Places&, const StreamNumbers&, const Weights&, float* down, float* up);
   void (*refinedRadiance)(const Places&, const StreamNumbers&, const ViewNumbers&, float* radiance);
 };

@@ -64,6 +64,17 @@ void sppPowers(const Places& places, float mu0, float albedo, float forward_shar
   });
 }
 
+void sppRadiance(const Places& places, float mu0, float albedo, float forward_share, float* down, float* up) {
+  using Formulas = StreamFormulas<Lanes>;
+  forBlocks(places, [&](Lanes depth, Lanes thickness, std::size_t first, std::size_t lanes) {
+    const auto powers = Formulas::sppPowers(depth, thickness, mu0, albedo, forward_share);
+    const Lanes direct = Formulas::directPower(min(max(depth, 0.f), thickness), mu0);
+    const auto radiance = Formulas::sppDiffuseRadiance(powers, direct);
+    store(radiance.down, down + first, lanes);
+    store(radiance.up, up + first, lanes);
+  });
+}
+
 template <int kStreams>
 void streamPowersOf(const Places& places, const StreamNumbers& numbers, const Weights& weights, float* down,
                     float* up) {
@@ -136,7 +147,9 @@ void refinedRadiance(const Places& places, const StreamNumbers& numbers, const V
 }  // namespace
 
 extern const detail::ArrayKernel the_kernel;
-constinit const detail::ArrayKernel the_kernel{
-    .sppPowers = sppPowers, .streamPowers = streamPowers, .refinedRadiance = refinedRadiance};
+constinit const detail::ArrayKernel the_kernel{.sppPowers = sppPowers,
+                                               .sppRadiance = sppRadiance,
+                                               .streamPowers = streamPowers,
+                                               .refinedRadiance = refinedRadiance};
 
 }  // namespace sunfleck::spp::SUNFLECK_ISA
