@@ -13,8 +13,8 @@ namespace sunfleck {
 inline constexpr double kPowerMargin = 1.5, kRadianceMargin = 2.;
 
 // (S14) Measures a map: in every cell, the errors at all its corners and in its middle, and those of powers also at
-// random places and more depths. On all threads. In leaves no error of radiance is measured nor promised: their views
-// take hundreds of times as long as those of particles.
+// random places and more depths. On all threads. In leaves no error of radiance is measured nor promised: each of
+// their views takes tens of microseconds.
 spp::SlabErrorMap measuredErrors(spp::MapKind kind, const Progress& progress = {});
 
 // Random places on a map, spread evenly over its cells, and the errors there, by a finer exact solution.
