@@ -95,8 +95,8 @@ int runWithin(double max_error, const SlabOptions& options, const RunOptions& ru
     question.mus.clear();
   }
   const SlabChoice choice = chooseModel(question, max_error);
-  const ModelAnswer given{choice.model, choice.promise() ? answer(*choice.model, question)
-                                                         : answerWithin(0.5 * max_error, *choice.model, question)};
+  const ModelAnswer given{choice.model,
+                          choice.promise() ? answer(*choice.model, question) : answerExactly(max_error, question)};
   if (!choice.promise()) question.setup.settings.streams = given.answer.streams;
   std::string text =
       run.json ? slabJson(question, given, choice, max_error) : slabText(question, given, choice, max_error);

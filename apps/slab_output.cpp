@@ -26,14 +26,17 @@ double radianceAt(const SlabQuestion& question, const SlabAnswer& answer, std::s
 }
 
 std::string fluxTable(const SlabQuestion& question, const SlabAnswer& answer, bool is_sample) {
+  const bool leaves = !question.leaf_angles.empty();
   std::string text = fmt::format(
-      "\nFluxes, as shares of the flux that arrives; mean intensity in the unit of radiance\n"
-      "{:>12} {:>14} {:>14} {:>14} {:>16}\n",
-      "depth", "down, diffuse", "down, direct", "up", "mean intensity");
+      "\nFluxes, as shares of the flux that arrives; mean intensity in the unit of radiance{}\n"
+      "{:>12} {:>14} {:>14} {:>14} {:>16}{}\n",
+      leaves ? ";\nleaf irradiance of both sides together, per one-sided leaf area" : "", "depth", "down, diffuse",
+      "down, direct", "up", "mean intensity", leaves ? "  leaf irradiance" : "");
   for (std::size_t d = 0; d < question.depths.size(); ++d) {
     const pp::Fluxes& f = answer.fluxes[d];
-    text += fmt::format("{:12.6g} {:14.8f} {:14.8f} {:14.8f} {:>16}\n", question.depths[d], shown(f.down), f.direct,
-                        shown(f.up), is_sample ? "-" : fmt::format("{:.8g}", f.mean_intensity));
+    text += fmt::format("{:12.6g} {:14.8f} {:14.8f} {:14.8f} {:>16}{}\n", question.depths[d], shown(f.down), f.direct,
+                        shown(f.up), is_sample ? "-" : fmt::format("{:.8g}", f.mean_intensity),
+                        leaves ? fmt::format(" {:16.8g}", f.leaf_irradiance) : "");
   }
   return text;
 }
@@ -61,6 +64,7 @@ Json jsonOf(const SlabQuestion& question, const SlabAnswer& answer, bool is_samp
     const pp::Fluxes& f = answer.fluxes[d];
     fluxes.push_back({{"depth", question.depths[d]}, {"down", f.down}, {"direct", f.direct}, {"up", f.up}});
     if (!is_sample) fluxes.back()["mean_intensity"] = f.mean_intensity;
+    if (!question.leaf_angles.empty()) fluxes.back()["leaf_irradiance"] = f.leaf_irradiance;
     if (answer.radiances.empty()) continue;
     for (std::size_t i = 0; i < question.mus.size(); ++i)
       for (std::size_t j = 0; j < question.phis.size(); ++j)
@@ -95,7 +99,9 @@ std::string choiceText(const SlabQuestion& question, const SlabChoice& choice, d
   std::string text = fmt::format("Within {:.6g} %: ", 100. * max_error);
   if (!choice.promise()) return text + fmt::format("the exact solver, since {}\n\n", choice.reason);
   text += fmt::format("{}, at most {} off in {}{}\n", choice.model->name, percent(choice.promise()->error),
-                      question.depths.empty() ? "shares" : "shares, fluxes and mean intensity",
+                      question.depths.empty()        ? "shares"
+                      : question.leaf_angles.empty() ? "shares, fluxes and mean intensity"
+                                                     : "shares, fluxes and leaf irradiance",
                       question.mus.empty() ? "" : ", and in radiance as RMS over all directions");
   text += fmt::format("{:>16} {:>10} {:>12}\n", "closed form", "cost", "may be off");
   for (const TierPromise& promise : choice.promises)
@@ -143,11 +149,11 @@ std::string slabText(const SlabQuestion& question, const ModelAnswer& given, dou
   std::string text =
       fmt::format("{} ({}){}{:>12.3g} ms\n", given.model->name, given.model->label, effort, 1e3 * answer.seconds);
   if (answer.difference)
-    text +=
-        *answer.difference < tolerance
-            ? fmt::format("N = {} is within {:.2g} of N = {}\n", answer.streams, *answer.difference, 2 * answer.streams)
-            : fmt::format("the tolerance of {:.2g} is not reached: N = {} is {:.2g} from N = {}\n", tolerance,
-                          answer.streams, *answer.difference, answer.streams / 2);
+    text += *answer.difference < tolerance
+                ? fmt::format("N = {} is within {:.2g} of N = {}\n", answer.streams, *answer.difference,
+                              answer.other_streams)
+                : fmt::format("the tolerance of {:.2g} is not reached: N = {} is {:.2g} from N = {}\n", tolerance,
+                              answer.streams, *answer.difference, answer.other_streams);
   const auto line = [&](const char* name, double SlabBudget::*share) {
     text += fmt::format("  {:<14} {:.12f}", name, budget.*share);
     if (answer.standard_errors && (*answer.standard_errors).*share > 0.)

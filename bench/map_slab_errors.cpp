@@ -1,5 +1,6 @@
-// Makes the map of the closed forms' errors: map_slab_errors FILE. With --check COUNT [SEED] it measures random places
-// instead and prints how often, and by how much, the errors there exceed what the map in the library promises.
+// Makes a map of the closed forms' errors: map_slab_errors particles|leaves FILE. With --check COUNT [SEED] in place of
+// FILE it measures random places and prints how often, and by how much, the errors there exceed what the map in the
+// library promises.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,8 +24,8 @@ Progress told() {
   };
 }
 
-int check(int count, unsigned seed) {
-  const std::vector<CheckedPlace> places = checkedPlaces(count, seed, told());
+int check(spp::MapKind kind, int count, unsigned seed) {
+  const std::vector<CheckedPlace> places = checkedPlaces(kind, count, seed, told());
   for (const spp::SlabQuantity quantity :
        {spp::SlabQuantity::kFlux, spp::SlabQuantity::kLeafIrradiance, spp::SlabQuantity::kRadiance}) {
     const auto q = static_cast<std::size_t>(quantity);
@@ -54,13 +55,15 @@ int check(int count, unsigned seed) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count >= 3 && std::string(arguments[1]) == "--check")
-    return check(std::atoi(arguments[2]), count > 3 ? static_cast<unsigned>(std::atoi(arguments[3])) : 1);
-  if (count != 2 || arguments[1][0] == '-') {
-    fmt::print(stderr, "usage: map_slab_errors FILE, or map_slab_errors --check COUNT [SEED]\n");
+  const std::string name = count > 2 ? arguments[1] : "", file = count > 2 ? arguments[2] : "";
+  if ((name != "particles" && name != "leaves") || (file == "--check") != (count > 3)) {
+    fmt::print(stderr, "usage: map_slab_errors particles|leaves FILE, or --check COUNT [SEED] in place of FILE\n");
     return 2;
   }
-  requireWritable(arguments[1]);
-  writeWhole(arguments[1], measuredParticleErrors(told()).file());
+  const spp::MapKind kind = name == "leaves" ? spp::MapKind::kLeaves : spp::MapKind::kParticles;
+  if (count > 3)
+    return check(kind, std::atoi(arguments[3]), count > 4 ? static_cast<unsigned>(std::atoi(arguments[4])) : 1);
+  requireWritable(file);
+  writeWhole(file, measuredErrors(kind, told()).file());
   return 0;
 }

@@ -150,11 +150,12 @@ Fluxes Solver::fluxes(double depth) const {
   const LayerRows& row = s.stack.layer[p];
   const double z = inside * layer.scale;
   s.kernel.single.fieldAt(s.basis, row, &z, s.u_row, s.v_row);
-  double sum = 0., difference = 0., mean = 0.;
+  double sum = 0., difference = 0., mean = 0., met = 0.;
   for (int j = 0; j < s.n; ++j) {
     sum += row.x_flux[j] * s.u_row[j];
     difference += row.y_flux[j] * s.v_row[j];
     mean += row.x_mean[j] * s.u_row[j];
+    met += row.x_absorb[j] * s.u_row[j];
   }
   const double share = layer.thickness > 0. && !std::isinf(layer.thickness) ? z / layer.thickness : 0.;
   const double planck = row.planck_top[0] + share * (row.planck_bottom[0] - row.planck_top[0]);
@@ -172,6 +173,8 @@ Fluxes Solver::fluxes(double depth) const {
     fluxes.up += s.problem.ground.albedo * s.hot_spot.transmitted * s.incident;
   }
   fluxes.mean_intensity = 0.5 * mean + planck + scaled / (4. * kPi);
+  fluxes.leaf_irradiance =
+      layer.leaves ? 2. * kPi * (met + planck) + scaled * layer.projection : 2. * kPi * fluxes.mean_intensity;
   return fluxes;
 }
 

@@ -29,6 +29,9 @@ struct Fluxes {
   double down = 0.;            // diffuse, without the direct beam [flux]
   double direct = 0.;          // the beam's own, unscattered [flux]
   double mean_intensity = 0.;  // radiance averaged over the sphere, direct beam included [radiance]
+  // Light that meets leaves from both sides together, per one-sided leaf area, direct beam included [flux]; times
+  // (1 - omega) it is what they absorb. Particles count as leaves of all directions alike: 2 pi mean intensity.
+  double leaf_irradiance = 0.;
 };
 
 // The exact solution by discrete ordinates. An object keeps its memory from one problem to the next: solving another of

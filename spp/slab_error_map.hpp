@@ -16,7 +16,7 @@ namespace sunfleck::spp {
 // What is wanted of a slab at a depth, and what the error of a closed form is then.
 enum class SlabQuantity {
   kFlux,            // the larger error of the fluxes up and down through the horizontal, over the flux that arrives
-  kLeafIrradiance,  // error of (P+ + P-) / 2 over its exact value, or over kDimIrradiance where that is less
+  kLeafIrradiance,  // error of SlabLight::leaf_irradiance over its own, or over kDimIrradiance where that is less
   kRadiance,        // RMS over all directions of the error of the diffuse radiance [1/sr], for a beam of irradiance 1
 };
 inline constexpr std::size_t kSlabQuantities = 3;

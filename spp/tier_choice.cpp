@@ -16,14 +16,49 @@ double saturated(double depth) {
   return std::isinf(depth) ? kFaceDepth : depth / (1. + depth / kFaceDepth);
 }
 
-const SlabErrorMap& map() {
-  static const SlabErrorMap kMap(particleAxes(), detail::embeddedParticleErrors());
-  return kMap;
+std::span<const std::uint8_t> cellOf(const SlabPlace& place) {
+  const std::array<double, kMostMapAxes> coordinates = mapCoordinates(place);
+  if (std::holds_alternative<MappedLeaves>(place.medium)) {
+    static const SlabErrorMap kLeafMap(mapAxes(MapKind::kLeaves), detail::embeddedLeafErrors());
+    return kLeafMap.at(coordinates);
+  }
+  static const SlabErrorMap kParticleMap(mapAxes(MapKind::kParticles), detail::embeddedParticleErrors());
+  return kParticleMap.at(coordinates);
 }
 
 }  // namespace
 
-std::vector<MapAxis> particleAxes() {
+Medium mediumOf(const MappedMedium& mapped) {
+  if (const auto* leaves = std::get_if<MappedLeaves>(&mapped))
+    return LeafScattering{.angles = LeafAngles::named(kMappedAngles[leaves->angles]),
+                          .reflectance = leaves->reflectance,
+                          .transmittance = leaves->transmittance};
+  const auto& particles = std::get<MappedParticles>(mapped);
+  return Particles{.albedo = particles.albedo, .phase = PhaseFunction::henyeyGreenstein(particles.asymmetry)};
+}
+
+std::optional<MappedMedium> mappedMedium(const Medium& medium) {
+  if (const auto* particles = std::get_if<Particles>(&medium)) {
+    const std::optional<double> asymmetry = particles->phase.henyeyGreensteinAsymmetry();
+    if (!asymmetry) return std::nullopt;
+    return MappedParticles{*asymmetry, particles->albedo};
+  }
+  const auto& leaves = std::get<LeafScattering>(medium);
+  if (leaves.hot_spot > 0.) return std::nullopt;
+  for (std::size_t i = 0; i < kMappedAngles.size(); ++i)
+    if (leaves.angles == LeafAngles::named(kMappedAngles[i]))
+      return MappedLeaves{i, leaves.reflectance, leaves.transmittance};
+  return std::nullopt;
+}
+
+std::vector<MapAxis> mapAxes(MapKind kind) {
+  if (kind == MapKind::kLeaves)
+    return {{"lost", {0., 0.01, 0.03, 0.07, 0.15, 0.3, 0.6, 1.}, {}},
+            {"angles", {kMappedAngles.begin(), kMappedAngles.end()}},
+            {"reflected", {0., 0.3, 0.5, 0.6, 0.75, 1.}, {}},
+            {"thickness", {0., 0.3, 1., 2., 4., 8., 16., kInfinite}, {kInfinite}},
+            {"depth", {0., 0.15, 0.5, 0.85, 1.}, {0., 1.}},
+            {"mu0", {0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.}, {}}};
   return {{"lost", {0., 1e-4, 1e-3, 3e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.}, {}},
           {"g", {-0.9, -0.7, -0.5, -0.3, -0.1, 0., 0.1, 0.3, 0.5, 0.7, 0.8, 0.9}, {0.}},
           {"thickness", {0., 0.1, 0.3, 1., 2., 4., 8., 16., 64., kInfinite}, {kInfinite}},
@@ -31,8 +66,33 @@ std::vector<MapAxis> particleAxes() {
           {"mu0", {0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.}, {1.}}};
 }
 
-std::array<double, 5> particleCoordinates(const SlabPlace& place) {
-  return {1. - place.albedo, place.asymmetry, place.thickness, relativeDepth(place.depth, place.thickness), place.mu0};
+std::array<double, kMostMapAxes> mapCoordinates(const SlabPlace& place) {
+  const double depth = relativeDepth(place.depth, place.thickness);
+  if (const auto* leaves = std::get_if<MappedLeaves>(&place.medium)) {
+    const double albedo = leaves->reflectance + leaves->transmittance;
+    // Rounding of the sum must not lead off the map. Black leaves reflect no share of anything: as well the half.
+    return {std::max(0., 1. - albedo),
+            static_cast<double>(leaves->angles),
+            albedo > 0. ? leaves->reflectance / albedo : 0.5,
+            place.thickness,
+            depth,
+            place.mu0};
+  }
+  const auto& particles = std::get<MappedParticles>(place.medium);
+  return {1. - particles.albedo, particles.asymmetry, place.thickness, depth, place.mu0, 0.};
+}
+
+SlabPlace placeAt(MapKind kind, std::span<const double> coordinates) {
+  const std::size_t axes = coordinates.size();
+  const double albedo = 1. - coordinates[0], thickness = coordinates[axes - 3];
+  SlabPlace place{
+      .thickness = thickness, .depth = depthAt(coordinates[axes - 2], thickness), .mu0 = coordinates[axes - 1]};
+  if (kind == MapKind::kLeaves)
+    place.medium = MappedLeaves{static_cast<std::size_t>(coordinates[1]), coordinates[2] * albedo,
+                                albedo - coordinates[2] * albedo};
+  else
+    place.medium = MappedParticles{coordinates[1], albedo};
+  return place;
 }
 
 double relativeDepth(double depth, double thickness) {
@@ -54,19 +114,19 @@ double depthAt(double relative_depth, double thickness) {
 }
 
 double promisedError(const SlabTier& tier, const SlabPlace& place, SlabQuantity quantity) {
-  const std::span<const std::uint8_t> cell = map().at(particleCoordinates(place));
+  const std::span<const std::uint8_t> cell = cellOf(place);
   return SlabErrorMap::error(cell.empty() ? SlabErrorMap::kNoPromise : cell[SlabErrorMap::column(tier, quantity)]);
 }
 
 const SlabTier* cheapestTier(const SlabPlace& place, std::span<const SlabQuantity> quantities, double max_error) {
-  return cheapestTier(map().at(particleCoordinates(place)), quantities, max_error);
+  return cheapestTier(cellOf(place), quantities, max_error);
 }
 
 const SlabTier* cheapestTier(std::span<const SlabPlace> places, std::span<const SlabQuantity> quantities,
                              double max_error) {
   std::array<std::uint8_t, 255> largest{};
   for (const SlabPlace& place : places) {
-    const std::span<const std::uint8_t> cell = map().at(particleCoordinates(place));
+    const std::span<const std::uint8_t> cell = cellOf(place);
     if (cell.empty()) return nullptr;
     std::ranges::transform(cell, largest, largest.begin(), [](auto a, auto b) { return std::max(a, b); });
   }

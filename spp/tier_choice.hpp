@@ -1,25 +1,48 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
+#include <variant>
 
+#include "scattering/medium.hpp"
 #include "spp/slab_error_map.hpp"
 
-// (S14) The cheapest closed form that is near enough at a place in a slab, by the map of measured errors.
+// (S14) The cheapest closed form that is near enough at a place in a slab, by maps of measured errors.
 namespace sunfleck::spp {
 
-// A depth in a homogeneous slab of Henyey-Greenstein particles on black ground under a beam.
-struct SlabPlace {
+// The media that are mapped: Henyey-Greenstein particles ...
+struct MappedParticles {
   double asymmetry = 0.;  // g [1]
   double albedo = 0.;     // omega [1]
-  double thickness = 1.;  // w [1], may be infinite
-  double depth = 0.;      // z [1], 0 .. w
+};
+// ... and leaves without a hot spot, inclined as one of kMappedAngles.
+struct MappedLeaves {
+  std::size_t angles = 0;  // of kMappedAngles
+  double reflectance = 0.5, transmittance = 0.5;
+};
+using MappedMedium = std::variant<MappedParticles, MappedLeaves>;
+inline constexpr std::array<std::string_view, 6> kMappedAngles{"spherical",   "planophile",   "erectophile",
+                                                               "plagiophile", "extremophile", "uniform"};
+
+Medium mediumOf(const MappedMedium& mapped);
+std::optional<MappedMedium> mappedMedium(const Medium& medium);  // nothing for another
+
+// A depth in a homogeneous slab on black ground under a beam.
+struct SlabPlace {
+  MappedMedium medium;
+  double thickness = 1.;  // w: optical, of leaves leaf area index [1]; may be infinite
+  double depth = 0.;      // z, of its kind [1], 0 .. w
   double mu0 = 1.;        // |cos| of the beam to the slab's normal [1]
 };
 
-// The map's axes, and a place on them: 1 - omega, g, w, relative depth, mu0.
-std::vector<MapAxis> particleAxes();
-std::array<double, 5> particleCoordinates(const SlabPlace& place);
+// There is a map for each kind of medium. Its axes are the medium's own, 1 - omega first, then w, relative depth and
+// mu0; a place has as many coordinates, and 0 beyond.
+enum class MapKind { kParticles, kLeaves };
+inline constexpr std::size_t kMostMapAxes = 6;
+std::vector<MapAxis> mapAxes(MapKind kind);
+std::array<double, kMostMapAxes> mapCoordinates(const SlabPlace& place);
+SlabPlace placeAt(MapKind kind, std::span<const double> coordinates);
 
 // t = A / (A + B), A = z / (1 + z / 4), B = (w - z) / (1 + (w - z) / 4): near z / w in a thin slab, and in a thick one
 // fine at both faces; 1/2 in the middle and deep in a half space. depthAt is the inverse; t < 1/2 if w is infinite.
@@ -30,8 +53,8 @@ double depthAt(double relative_depth, double thickness);
 double promisedError(const SlabTier& tier, const SlabPlace& place, SlabQuantity quantity);
 
 // The cheapest closed form that keeps max_error of all `quantities` at a place, or at every one of several; nullptr
-// where none is known to. The first call unpacks the map; the others allocate nothing and take a tenth of a
-// microsecond a place.
+// where none is known to. The first call for a kind of medium unpacks its map; the others allocate nothing and take a
+// tenth of a microsecond a place.
 const SlabTier* cheapestTier(const SlabPlace& place, std::span<const SlabQuantity> quantities, double max_error);
 const SlabTier* cheapestTier(std::span<const SlabPlace> places, std::span<const SlabQuantity> quantities,
                              double max_error);

@@ -298,7 +298,20 @@ does "RMS over all directions" slab --max-error 5% --mu 1,-0.5 --g 0.3
 does "the exact solver, since no closed form keeps it" slab --max-error 1e-6
 does "the exact solver, since the slab is outside of the map" slab --max-error 1% --mu0 0.01
 does "the exact solver, since errors of closed forms are not mapped" slab --max-error 1% --ground-albedo 0.5
-does '"reason"' slab --max-error 1% --leaves spherical --json
+does '"reason"' slab --max-error 1% --ground-albedo 0.5 --json
+for leaves in spherical planophile erectophile plagiophile extremophile uniform; do
+  does "shares, fluxes and leaf irradiance" slab --max-error 5% --leaves $leaves --thickness 3 --depths 0,1
+done
+does "<- the cheapest that keeps it" slab --max-error 3% --leaves planophile --reflectance 0.6 --transmittance 0.35
+does '"leaf_irradiance"' slab --max-error 3% --leaves uniform --thickness 2 --depths 1 --json
+for leaves in ellipsoidal:1.5 beta:57,20; do
+  does "are not mapped for leaves inclined otherwise than spherical" slab --max-error 3% --leaves $leaves --thickness 3
+done
+does "are not mapped for layers, a ground, a sky or a hot spot" slab --max-error 3% --leaves spherical --hot-spot 0.1
+does "are not mapped for radiance in leaves" slab --max-error 3% --leaves spherical --mu 0.5
+does "are not mapped for moments" slab --max-error 3% --moments moments.txt
+does "N = 16 is within" slab --max-error 1% --mu0 0.01
+does "leaf irradiance" slab --leaves erectophile --thickness 3 --depths 1
 does "wrote chosen.svg" slab --max-error 2% --plot chosen.svg
 "$program" slab --max-error 1% --depths 1 | grep -q "radiance \[" && fail "slab --max-error: radiance nobody asked for"
 does "g,omega,thickness,mu0,reflectance,transmittance,direct,model" slab --max-error 1% --batch cases.csv --quiet

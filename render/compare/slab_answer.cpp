@@ -50,6 +50,8 @@ SlabAnswer answerWithin(double tolerance, const SlabModel& model, SlabQuestion q
     SlabAnswer fine = with(streams);
     const double change = difference(coarse, fine);
     coarse.difference = fine.difference = change;
+    coarse.other_streams = streams;
+    fine.other_streams = streams / 2;
     if (change < tolerance) return coarse;
     if (streams == 256) return fine;
     coarse = std::move(fine);

@@ -20,14 +20,15 @@ struct SlabQuestion {
 
 struct SlabAnswer {
   SlabBudget budget;
-  std::vector<pp::Fluxes> fluxes;  // at each depth, per incident flux, but for the mean intensity
+  std::vector<pp::Fluxes> fluxes;  // at each depth, per incident flux, but for mean intensity and leaf irradiance
   std::vector<double> radiances;   // [(d * mus + i) * phis + j]
   std::optional<double> residual;
   std::optional<SlabBudget> standard_errors;  // of a sample
   int streams = 0;
   double seconds = 0.;  // that the model took
-  // Where the number of streams was chosen: how far the next number's answer is.
+  // Where the number of streams was chosen: how far the answer of another number is.
   std::optional<double> difference;
+  int other_streams = 0;
 };
 
 SlabAnswer answer(const SlabModel& model, const SlabQuestion& question);

@@ -3,10 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <mutex>
 
 #include "core/random.hpp"
@@ -15,24 +15,23 @@ namespace sunfleck {
 namespace {
 
 using spp::MapAxis;
+using spp::MapKind;
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kThin = 1e-3;    // stands for thickness 0: errors go to 0 there
 constexpr double kThick = 1000.;  // stands for the thickest finite slabs
-constexpr int kMorePlaces = 12;   // in each cell, for powers alone, which take a hundredth of the time
-constexpr int kMoreDepths = 8;
-constexpr double kDeep = 0.49;  // relative depth that stands for the bottomless rest of a half space
+constexpr int kMoreDepths = 8;    // in each cell, for powers alone, which take a hundredth of the time
+constexpr double kDeep = 0.49;    // relative depth that stands for the bottomless rest of a half space
+constexpr std::size_t kLost = 0;  // the first of spp::mapAxes()
 
-enum Axis : std::size_t { kLost, kAsymmetry, kThickness, kDepth, kMu0, kAxes };
+int morePlaces(MapKind kind) {
+  return kind == MapKind::kLeaves ? 4 : 12;
+}
 
-// A value within a cell by the share of the way through it; the cells of 1 - omega and of thickness are as many
-// decades.
-double within(const MapAxis& axis, std::size_t which, int cell, double share) {
-  const auto [low, high] = axis.range(cell);
-  if (low == high) return low;
-  if ((which == kLost || which == kThickness) && low > 0. && std::isfinite(high))
-    return low * std::pow(high / low, share);
-  return std::isinf(high) ? low / (1. - share) : low + share * (high - low);
+TierErrorSettings settingsFor(const spp::MappedMedium& medium) {
+  const auto* particles = std::get_if<spp::MappedParticles>(&medium);
+  if (!particles) return {.streams = 32, .cosines = 0};
+  if (std::abs(particles->asymmetry) < 0.6) return {.streams = 32, .cosines = 6, .azimuths = 6};
+  return {.streams = 40, .cosines = 8, .azimuths = 8};
 }
 
 // A value at which errors are measured, and the cells they count for.
@@ -40,55 +39,84 @@ struct Sample {
   double value;
   std::vector<int> cells;
 };
+using Point = std::vector<double>;  // a value on each axis
 
-// Corners of the cells; no light is scattered where 1 - omega = 1, and all tiers are exact but for rounding.
-std::vector<Sample> corners(const MapAxis& axis, std::size_t which) {
-  std::vector<Sample> samples;
-  for (std::size_t i = 0; i < axis.edges().size(); ++i) {
-    const double edge = axis.edges()[i];
-    if (which == kLost && edge == 1.) continue;
-    samples.push_back({which == kThickness && edge == 0. ? kThin : edge, axis.around(i)});
-    if (which == kThickness && std::isinf(edge)) samples.push_back({kThick, {axis.cell(kThick)}});
+// The axes of one map, and values on them.
+class Axes {
+ public:
+  explicit Axes(MapKind kind) : axes_(spp::mapAxes(kind)) {}
+  std::size_t size() const { return axes_.size(); }
+  std::size_t thickness() const { return size() - 3; }
+  std::size_t depth() const { return size() - 2; }
+  const std::vector<MapAxis>& all() const { return axes_; }
+
+  // A value within a cell by the share of the way through it; the cells of 1 - omega and of thickness are as many
+  // decades.
+  double within(std::size_t axis, int cell, double share) const {
+    const auto [low, high] = axes_[axis].range(cell);
+    if (low == high) return low;
+    if ((axis == kLost || axis == thickness()) && low > 0. && std::isfinite(high))
+      return low * std::pow(high / low, share);
+    return std::isinf(high) ? low / (1. - share) : low + share * (high - low);
   }
-  return samples;
-}
 
-std::vector<Sample> middles(const MapAxis& axis, std::size_t which) {
-  std::vector<Sample> samples;
-  for (int cell = 0; cell < axis.cells(); ++cell) samples.push_back({within(axis, which, cell, 0.5), {cell}});
-  return samples;
-}
-
-// Depths within each cell, evenly spread.
-std::vector<Sample> manyWithin(const MapAxis& axis, std::size_t which) {
-  std::vector<Sample> samples;
-  for (int cell = 0; cell < axis.cells(); ++cell) {
-    const bool edge = axis.range(cell)[0] == axis.range(cell)[1];
-    for (int i = 0; i < (edge ? 1 : kMoreDepths); ++i)
-      samples.push_back({within(axis, which, cell, (i + 0.5) / kMoreDepths), {cell}});
+  // Corners of the cells; no light is scattered where 1 - omega = 1, and all tiers are exact but for rounding.
+  std::vector<Sample> corners(std::size_t axis) const {
+    const MapAxis& cells = axes_[axis];
+    std::vector<Sample> samples;
+    for (std::size_t i = 0; i < cells.edges().size(); ++i) {
+      const double edge = cells.edges()[i];
+      if (axis == kLost && edge == 1.) continue;
+      samples.push_back({axis == thickness() && edge == 0. ? kThin : edge, cells.around(i)});
+      if (axis == thickness() && std::isinf(edge)) samples.push_back({kThick, {cells.cell(kThick)}});
+    }
+    return samples;
   }
-  return samples;
-}
 
-TierErrorSettings settingsFor(double asymmetry) {
-  if (std::abs(asymmetry) < 0.6) return {.streams = 32, .cosines = 6, .azimuths = 6};
-  return {.streams = 40, .cosines = 8, .azimuths = 8};
+  std::vector<Sample> middles(std::size_t axis) const {
+    std::vector<Sample> samples;
+    for (int cell = 0; cell < axes_[axis].cells(); ++cell) samples.push_back({within(axis, cell, 0.5), {cell}});
+    return samples;
+  }
+
+  // Depths within each cell, evenly spread.
+  std::vector<Sample> manyDepths() const {
+    std::vector<Sample> samples;
+    for (int cell = 0; cell < axes_[depth()].cells(); ++cell) {
+      const auto [low, high] = axes_[depth()].range(cell);
+      for (int i = 0; i < (low == high ? 1 : kMoreDepths); ++i)
+        samples.push_back({within(depth(), cell, (i + 0.5) / kMoreDepths), {cell}});
+    }
+    return samples;
+  }
+
+ private:
+  std::vector<MapAxis> axes_;
+};
+
+// Calls visit(chosen index on each axis) for all combinations, the last axis fastest; `skipped` stays at 0.
+template <typename Visit>
+void forAllOf(const std::vector<int>& counts, std::size_t skipped, const Visit& visit) {
+  std::vector<int> index(counts.size(), 0);
+  while (true) {
+    visit(index);
+    std::size_t axis = counts.size();
+    while (axis-- > 0) {
+      if (axis != skipped && ++index[axis] < counts[axis]) break;
+      index[axis] = 0;
+      if (axis == 0) return;
+    }
+  }
 }
 
 class Cells {
  public:
-  Cells() : axes_(spp::particleAxes()) {
+  explicit Cells(MapKind kind) : kind_(kind), axes_(kind) {
     std::size_t cells = 1;
-    for (const MapAxis& axis : axes_) cells *= static_cast<std::size_t>(axis.cells());
+    for (const MapAxis& axis : axes_.all()) cells *= static_cast<std::size_t>(axis.cells());
     largest_.assign(cells * spp::SlabErrorMap::columns(), 0.);
-    for (auto make : {corners, middles}) {
-      const auto of = [&](Axis axis) { return make(axes_[axis], axis); };
-      const auto depths = std::make_shared<const std::vector<Sample>>(of(kDepth));
-      for (const Sample& lost : of(kLost))
-        for (const Sample& asymmetry : of(kAsymmetry))
-          for (const Sample& thickness : of(kThickness))
-            for (const Sample& mu0 : of(kMu0)) slabs_.push_back({lost, asymmetry, thickness, mu0, depths, true});
-    }
+    addSamples(0, &Axes::corners);
+    addSamples(1, &Axes::middles);
     addRandom();
   }
 
@@ -96,62 +124,85 @@ class Cells {
 
   void measure(std::size_t index) {
     const Slab& slab = slabs_[index];
-    const pp::SlabCase given{.asymmetry = slab.asymmetry.value,
-                             .albedo = 1. - slab.lost.value,
-                             .thickness = slab.thickness.value,
-                             .mu0 = slab.mu0.value};
+    Point values;
+    for (const Sample& sample : slab.samples) values.push_back(sample.value);
+    const bool bottomless = std::isinf(values[axes_.thickness()]);
+    values[axes_.depth()] = 0.;
+    const spp::SlabPlace place = spp::placeAt(kind_, values);
     std::vector<const Sample*> samples;
     std::vector<double> depths;
-    for (const Sample& sample : *slab.depths) {
-      if (std::isinf(given.thickness) && sample.value > 0.5) continue;
+    for (const Sample& sample : depths_[slab.depths]) {
+      if (bottomless && sample.value > 0.5) continue;
       samples.push_back(&sample);
-      depths.push_back(
-          spp::depthAt(std::isinf(given.thickness) ? std::min(sample.value, kDeep) : sample.value, given.thickness));
+      depths.push_back(spp::depthAt(bottomless ? std::min(sample.value, kDeep) : sample.value, place.thickness));
     }
-    TierErrorSettings settings = settingsFor(given.asymmetry);
-    if (!slab.radiance) settings.cosines = 0;
-    const std::vector<TierErrors> errors = slabTierErrors(given, depths, settings);
+    TierErrorSettings settings = settingsFor(place.medium);
+    if (slab.depths == kManyDepths) settings.cosines = 0;
+    const std::vector<TierErrors> errors = slabTierErrors(place, depths, settings);
+    std::vector<Sample> touched = slab.samples;
     const std::scoped_lock lock(adding_);
-    for (std::size_t d = 0; d < samples.size(); ++d)
-      for (const int a : slab.lost.cells)
-        for (const int b : slab.asymmetry.cells)
-          for (const int c : slab.thickness.cells)
-            for (const int e : slab.mu0.cells)
-              for (const int z : samples[d]->cells) add({a, b, c, z, e}, {&errors[d * tiers_.size()], tiers_.size()});
+    for (std::size_t d = 0; d < samples.size(); ++d) {
+      touched[axes_.depth()] = *samples[d];
+      std::vector<int> counts;
+      for (const Sample& sample : touched) counts.push_back(static_cast<int>(sample.cells.size()));
+      forAllOf(counts, counts.size(), [&](const std::vector<int>& which) {
+        add(touched, which, {&errors[d * tiers_.size()], tiers_.size()});
+      });
+    }
   }
 
   spp::SlabErrorMap map() const {
     std::vector<std::uint8_t> codes;
     for (const double error : largest_) codes.push_back(spp::SlabErrorMap::code(error));
-    return {axes_, std::move(codes)};
+    if (settingsFor(spp::placeAt(kind_, Point(axes_.size(), 0.)).medium).cosines == 0) promiseNoRadiance(codes);
+    return {axes_.all(), std::move(codes)};
   }
 
  private:
+  static constexpr std::size_t kManyDepths = 2;  // with these, powers alone
   struct Slab {
-    Sample lost, asymmetry, thickness, mu0;
-    std::shared_ptr<const std::vector<Sample>> depths;
-    bool radiance;  // is measured too
+    std::vector<Sample> samples;  // on each axis but that of depth
+    std::size_t depths;           // of depths_
   };
+
+  void addSamples(std::size_t depths, std::vector<Sample> (Axes::*make)(std::size_t) const) {
+    std::vector<std::vector<Sample>> samples;
+    std::vector<int> counts;
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+      samples.push_back((axes_.*make)(axis));
+      counts.push_back(static_cast<int>(samples.back().size()));
+    }
+    depths_[depths] = samples[axes_.depth()];
+    forAllOf(counts, axes_.depth(), [&](const std::vector<int>& index) {
+      Slab slab{{}, depths};
+      for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+        slab.samples.push_back(samples[axis][static_cast<std::size_t>(index[axis])]);
+      slabs_.push_back(std::move(slab));
+    });
+  }
 
   // Powers at random places within each cell.
   void addRandom() {
-    const auto depths = std::make_shared<const std::vector<Sample>>(manyWithin(axes_[kDepth], kDepth));
+    depths_[kManyDepths] = axes_.manyDepths();
+    std::vector<int> counts;
+    for (const MapAxis& axis : axes_.all()) counts.push_back(axis.cells());
     Random random(1, 0);
-    const auto in = [&](Axis axis, int cell) {
-      return Sample{within(axes_[axis], axis, cell, random.uniformDouble()), {cell}};
-    };
-    for (int a = 0; a < axes_[kLost].cells(); ++a)
-      for (int b = 0; b < axes_[kAsymmetry].cells(); ++b)
-        for (int c = 0; c < axes_[kThickness].cells(); ++c)
-          for (int e = 0; e < axes_[kMu0].cells(); ++e)
-            for (int i = 0; i < kMorePlaces; ++i)
-              slabs_.push_back({in(kLost, a), in(kAsymmetry, b), in(kThickness, c), in(kMu0, e), depths, false});
+    forAllOf(counts, axes_.depth(), [&](const std::vector<int>& cell) {
+      for (int i = 0; i < morePlaces(kind_); ++i) {
+        Slab slab{{}, kManyDepths};
+        for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+          slab.samples.push_back(
+              {axis == axes_.depth() ? 0. : axes_.within(axis, cell[axis], random.uniformDouble()), {cell[axis]}});
+        slabs_.push_back(std::move(slab));
+      }
+    });
   }
 
-  void add(std::array<int, kAxes> at, std::span<const TierErrors> errors) {
+  void add(const std::vector<Sample>& samples, const std::vector<int>& which, std::span<const TierErrors> errors) {
     std::size_t cell = 0;
-    for (std::size_t i = 0; i < kAxes; ++i)
-      cell = cell * static_cast<std::size_t>(axes_[i].cells()) + static_cast<std::size_t>(at[i]);
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      cell = cell * static_cast<std::size_t>(axes_.all()[i].cells()) +
+             static_cast<std::size_t>(samples[i].cells[static_cast<std::size_t>(which[i])]);
     for (std::size_t t = 0; t < tiers_.size(); ++t)
       for (std::size_t q = 0; q < spp::kSlabQuantities; ++q) {
         double& largest = largest_[cell * spp::SlabErrorMap::columns() +
@@ -161,8 +212,16 @@ class Cells {
       }
   }
 
-  std::vector<MapAxis> axes_;
+  void promiseNoRadiance(std::vector<std::uint8_t>& codes) const {
+    for (std::size_t cell = 0; cell < codes.size(); cell += spp::SlabErrorMap::columns())
+      for (const spp::SlabTier& tier : tiers_)
+        codes[cell + spp::SlabErrorMap::column(tier, spp::SlabQuantity::kRadiance)] = spp::SlabErrorMap::kNoPromise;
+  }
+
+  MapKind kind_;
+  Axes axes_;
   std::span<const spp::SlabTier> tiers_ = spp::slabTiers();
+  std::array<std::vector<Sample>, 3> depths_;  // corners, middles, many
   std::vector<Slab> slabs_;
   std::vector<double> largest_;
   std::mutex adding_;
@@ -181,30 +240,28 @@ void forAll(std::size_t count, const Progress& progress, const Work& work) {
 
 }  // namespace
 
-spp::SlabErrorMap measuredParticleErrors(const Progress& progress) {
-  Cells cells;
+spp::SlabErrorMap measuredErrors(MapKind kind, const Progress& progress) {
+  Cells cells(kind);
   forAll(cells.slabs(), progress, [&](std::size_t i) { cells.measure(i); });
   return cells.map();
 }
 
-std::vector<CheckedPlace> checkedPlaces(int count, unsigned seed, const Progress& progress) {
-  const std::vector<MapAxis> axes = spp::particleAxes();
+std::vector<CheckedPlace> checkedPlaces(MapKind kind, int count, unsigned seed, const Progress& progress) {
+  const Axes axes(kind);
   std::vector<CheckedPlace> places(static_cast<std::size_t>(count));
   forAll(places.size(), progress, [&](std::size_t i) {
     Random random(seed, i);
-    std::array<double, kAxes> values{};
-    for (std::size_t a = 0; a < kAxes; ++a) {
-      const int cell = std::min(static_cast<int>(random.uniformDouble() * axes[a].cells()), axes[a].cells() - 1);
-      values[a] = within(axes[a], a, cell, random.uniformDouble());
+    Point values;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const int cells = axes.all()[a].cells(),
+                cell = std::min(static_cast<int>(random.uniformDouble() * cells), cells - 1);
+      values.push_back(axes.within(a, cell, random.uniformDouble()));
     }
-    if (std::isinf(values[kThickness])) values[kDepth] *= kDeep;
-    const double depth = spp::depthAt(values[kDepth], values[kThickness]);
-    const pp::SlabCase slab{.asymmetry = values[kAsymmetry],
-                            .albedo = 1. - values[kLost],
-                            .thickness = values[kThickness],
-                            .mu0 = values[kMu0]};
-    places[i] = {{slab.asymmetry, slab.albedo, slab.thickness, depth, slab.mu0},
-                 slabTierErrors(slab, std::array{depth}, {.streams = 64, .cosines = 16, .azimuths = 20})};
+    if (std::isinf(values[axes.thickness()])) values[axes.depth()] *= kDeep;
+    const spp::SlabPlace place = spp::placeAt(kind, values);
+    TierErrorSettings finer{.streams = 64, .cosines = 16, .azimuths = 20};
+    if (settingsFor(place.medium).cosines == 0) finer.cosines = 0;
+    places[i] = {place, slabTierErrors(place, std::array{place.depth}, finer)};
   });
   return places;
 }

@@ -46,10 +46,17 @@ double thicknessOf(const SlabSetup& setup) {
   return setup.problem.layers.front().thickness;
 }
 
+// Leaf area that light along the beam meets across it, per leaf area: particles stand for leaves of all directions.
+double leafProjectionOf(const SlabSetup& setup) {
+  const Medium& medium = setup.problem.layers.front().medium;
+  return std::holds_alternative<LeafScattering>(medium) ? extinction(medium, setup.problem.beam->mu0) : 0.5;
+}
+
 // Direct light alone: all that SS knows.
 class DirectSlab : public SlabSolution {
  public:
-  explicit DirectSlab(const SlabSetup& setup) : mu0_(setup.problem.beam->mu0), thickness_(thicknessOf(setup)) {
+  explicit DirectSlab(const SlabSetup& setup)
+      : mu0_(setup.problem.beam->mu0), thickness_(thicknessOf(setup)), projection_(leafProjectionOf(setup)) {
     extinction_ = extinction(setup.problem.layers.front().medium, mu0_);
   }
   SlabBudget budget() const override {
@@ -59,7 +66,9 @@ class DirectSlab : public SlabSolution {
   double incident() const override { return mu0_; }
   pp::Fluxes fluxes(double depth) const override {
     const double direct = directAt(depth);
-    return {.direct = mu0_ * direct, .mean_intensity = direct / (4. * std::numbers::pi)};
+    return {.direct = mu0_ * direct,
+            .mean_intensity = direct / (4. * std::numbers::pi),
+            .leaf_irradiance = projection_ * direct};
   }
   void radiances(std::span<const double>, std::span<const double>, std::span<const double>,
                  std::span<double> result) override {
@@ -69,14 +78,15 @@ class DirectSlab : public SlabSolution {
 
  private:
   double directAt(double depth) const { return spp::precise::directPower(extinction_ * depth, mu0_); }
-  double mu0_, thickness_, extinction_;
+  double mu0_, thickness_, projection_, extinction_;
 };
 
 // SPP as it is printed, without the refinement: radiance is the same for all directions of a half. Depth is scaled by
 // the beam's extinction, which all light has in it.
 class SimplifiedSlab : public SlabSolution {
  public:
-  explicit SimplifiedSlab(const SlabSetup& setup) : mu0_(setup.problem.beam->mu0), thickness_(thicknessOf(setup)) {
+  explicit SimplifiedSlab(const SlabSetup& setup)
+      : mu0_(setup.problem.beam->mu0), thickness_(thicknessOf(setup)), projection_(leafProjectionOf(setup)) {
     const Medium& medium = setup.problem.layers.front().medium;
     extinction_ = extinction(medium, mu0_);
     albedo_ = singleScatteringAlbedo(medium);
@@ -94,7 +104,8 @@ class SimplifiedSlab : public SlabSolution {
     return {.up = mu0_ * powers.up,
             .down = mu0_ * std::max(0., powers.down - direct),
             .direct = mu0_ * direct,
-            .mean_intensity = (powers.down + powers.up) / (4. * std::numbers::pi)};
+            .mean_intensity = (powers.down + powers.up) / (4. * std::numbers::pi),
+            .leaf_irradiance = projection_ * (powers.down + powers.up)};
   }
   void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
                  std::span<double> result) override {
@@ -111,7 +122,7 @@ class SimplifiedSlab : public SlabSolution {
   spp::precise::SlabPowers at(double depth) const {
     return spp::precise::sppPowers(extinction_ * depth, extinction_ * thickness_, mu0_, albedo_, forward_share_);
   }
-  double mu0_, thickness_, extinction_, albedo_, forward_share_;
+  double mu0_, thickness_, projection_, extinction_, albedo_, forward_share_;
 };
 
 // The closed forms made of modes, their radiance refined by one integral along the line of sight.
@@ -133,7 +144,8 @@ class RefinedSlab : public SlabSolution {
     return {.up = light.flux_up,
             .down = std::max(0., light.flux_down - direct),
             .direct = direct,
-            .mean_intensity = (light.power_down + light.power_up) / (4. * std::numbers::pi)};
+            .mean_intensity = (light.power_down + light.power_up) / (4. * std::numbers::pi),
+            .leaf_irradiance = light.leaf_irradiance};
   }
   void radiances(std::span<const double> depths, std::span<const double> mus, std::span<const double> phis,
                  std::span<double> result) override {
@@ -267,12 +279,17 @@ const std::vector<SlabModel>& streamModels() {
 
 }  // namespace
 
+SlabSetup slabUnderBeam(Medium medium, double thickness, double mu0, const pp::Settings& settings) {
+  return {.problem = {.layers = {{.thickness = thickness, .medium = std::move(medium)}}, .beam = pp::Beam{.mu0 = mu0}},
+          .settings = settings};
+}
+
 SlabSetup homogeneousSlab(const pp::SlabCase& slab, const pp::Settings& settings) {
-  pp::Layer layer{.thickness = slab.thickness,
-                  .medium = Particles{.albedo = slab.albedo, .phase = PhaseFunction::henyeyGreenstein(slab.asymmetry)}};
-  return {.problem = {.layers = {std::move(layer)}, .beam = pp::Beam{.mu0 = slab.mu0}},
-          .settings = settings,
-          .homogeneous = slab};
+  SlabSetup setup =
+      slabUnderBeam(Particles{.albedo = slab.albedo, .phase = PhaseFunction::henyeyGreenstein(slab.asymmetry)},
+                    slab.thickness, slab.mu0, settings);
+  setup.homogeneous = slab;
+  return setup;
 }
 
 bool isSlabUnderBeam(const pp::Problem& problem) {

@@ -23,6 +23,7 @@ struct SlabSetup {
                                             // black ground under a beam of irradiance 1 and azimuth 0
   TraceEffort effort{.paths = 200'000};     // of Monte Carlo
 };
+SlabSetup slabUnderBeam(Medium medium, double thickness, double mu0, const pp::Settings& settings = {});
 SlabSetup homogeneousSlab(const pp::SlabCase& slab, const pp::Settings& settings = {});
 
 // Where the light that arrives ends up, as shares of it [1].

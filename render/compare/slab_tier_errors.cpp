@@ -16,7 +16,7 @@ struct Directions {
   std::vector<double> mus, weights, phis;  // the weights' sum is 1
 
   // Radiance does not depend on the azimuth where the phase function or the beam has none.
-  Directions(const pp::SlabCase& slab, const TierErrorSettings& settings) {
+  Directions(const spp::SlabPlace& slab, const TierErrorSettings& settings) {
     if (settings.cosines == 0) return;
     const DoubleGauss rule = doubleGauss(2 * settings.cosines);
     for (std::size_t i = 0; i < rule.mu.size(); ++i)
@@ -24,7 +24,8 @@ struct Directions {
         mus.push_back(half * rule.mu[i]);
         weights.push_back(0.5 * rule.weight[i]);
       }
-    const int azimuths = slab.asymmetry == 0. || slab.mu0 == 1. ? 1 : settings.azimuths;
+    const auto* particles = std::get_if<spp::MappedParticles>(&slab.medium);
+    const int azimuths = (particles && particles->asymmetry == 0.) || slab.mu0 == 1. ? 1 : settings.azimuths;
     for (int j = 0; j < azimuths; ++j) phis.push_back((j + 0.5) * pi / azimuths);
   }
 };
@@ -53,10 +54,11 @@ double radianceError(const Light& light, const Light& exact, std::size_t depth, 
 
 }  // namespace
 
-std::vector<TierErrors> slabTierErrors(const pp::SlabCase& slab, std::span<const double> depths,
+std::vector<TierErrors> slabTierErrors(const spp::SlabPlace& slab, std::span<const double> depths,
                                        const TierErrorSettings& settings) {
   const Directions directions(slab, settings);
-  const SlabSetup setup = homogeneousSlab(slab, {.streams = settings.streams});
+  const SlabSetup setup =
+      slabUnderBeam(spp::mediumOf(slab.medium), slab.thickness, slab.mu0, {.streams = settings.streams});
   const Light exact(*exactSlabModel().solve(setup), depths, directions);
   const std::span<const spp::SlabTier> tiers = spp::slabTiers();
   std::vector<TierErrors> errors(depths.size() * tiers.size());
@@ -69,10 +71,9 @@ std::vector<TierErrors> slabTierErrors(const pp::SlabCase& slab, std::span<const
     const Light light(*findSlabModel(tiers[t].name)->solve(setup), depths, directions);
     for (std::size_t d = 0; d < depths.size(); ++d) {
       const pp::Fluxes &a = light.fluxes[d], &b = exact.fluxes[d];
-      const double irradiance = 2. * pi * b.mean_intensity;
       errors[d * tiers.size() + t] = {
           std::max(std::abs(a.up - b.up), std::abs(a.down + a.direct - b.down - b.direct)) / slab.mu0,
-          2. * pi * std::abs(a.mean_intensity - b.mean_intensity) / std::max(irradiance, spp::kDimIrradiance),
+          std::abs(a.leaf_irradiance - b.leaf_irradiance) / std::max(b.leaf_irradiance, spp::kDimIrradiance),
           radianceError(light, exact, d, directions)};
     }
   }

@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pp_solver/slab_batch.hpp"
-#include "spp/slab_error_map.hpp"
+#include "spp/tier_choice.hpp"
 
 namespace sunfleck {
 
@@ -17,9 +16,10 @@ struct TierErrorSettings {
 };
 
 // (S14) How far each tier is off at some depths of a slab, by the measures of spp::SlabQuantity, against the exact
-// solver: one entry for each tier of spp::slabTiers() and each depth, the tiers of a depth side by side.
+// solver: one entry for each tier of spp::slabTiers() and each depth, the tiers of a depth side by side. The slab's own
+// depth is not asked for.
 using TierErrors = std::array<double, spp::kSlabQuantities>;
-std::vector<TierErrors> slabTierErrors(const pp::SlabCase& slab, std::span<const double> depths,
+std::vector<TierErrors> slabTierErrors(const spp::SlabPlace& slab, std::span<const double> depths,
                                        const TierErrorSettings& settings = {});
 
 }  // namespace sunfleck

@@ -4,7 +4,8 @@
 
 namespace sunfleck::spp::detail {
 
-// The file particle_errors.map, as it was when this was built.
+// The files particle_errors.map and leaf_errors.map, as they were when this was built.
 std::string_view embeddedParticleErrors();
+std::string_view embeddedLeafErrors();
 
 }  // namespace sunfleck::spp::detail
