@@ -1,6 +1,7 @@
 #include "spp/tier_choice.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -97,7 +98,7 @@ SlabPlace placeAt(MapKind kind, std::span<const double> coordinates) {
 
 double relativeDepth(double depth, double thickness) {
   if (depth <= 0.) return 0.;
-  if (depth >= thickness) return 1.;
+  if (depth >= thickness) return std::isinf(thickness) ? 2. : 1.;  // the face that is nowhere is on no map
   const double above = saturated(depth), below = saturated(thickness - depth);
   return above / (above + below);
 }
@@ -124,6 +125,7 @@ const SlabTier* cheapestTier(const SlabPlace& place, std::span<const SlabQuantit
 
 const SlabTier* cheapestTier(std::span<const SlabPlace> places, std::span<const SlabQuantity> quantities,
                              double max_error) {
+  assert(!places.empty() && !quantities.empty());
   std::array<std::uint8_t, 255> largest{};
   for (const SlabPlace& place : places) {
     const std::span<const std::uint8_t> cell = cellOf(place);

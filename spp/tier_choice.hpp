@@ -53,8 +53,8 @@ double depthAt(double relative_depth, double thickness);
 double promisedError(const SlabTier& tier, const SlabPlace& place, SlabQuantity quantity);
 
 // The cheapest closed form that keeps max_error of all `quantities` at a place, or at every one of several; nullptr
-// where none is known to. The first call for a kind of medium unpacks its map; the others allocate nothing and take a
-// tenth of a microsecond a place.
+// where none is known to. There must be a place and a quantity. The first call for a kind of medium unpacks its map;
+// the others allocate nothing and take a tenth of a microsecond a place.
 const SlabTier* cheapestTier(const SlabPlace& place, std::span<const SlabQuantity> quantities, double max_error);
 const SlabTier* cheapestTier(std::span<const SlabPlace> places, std::span<const SlabQuantity> quantities,
                              double max_error);

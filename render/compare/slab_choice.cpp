@@ -144,7 +144,8 @@ std::vector<ChosenFluxes> fluxesWithin(double max_error, std::span<const pp::Sla
     const std::array faces{top, bottom};
     const spp::SlabTier* tier =
         spp::cheapestTier(std::span(faces).first(std::isfinite(cases[i].thickness) ? 2 : 1), kFluxes, max_error);
-    if (!tier) {
+    // Each case may be of another medium, whose streams' constants cost more than to solve it exactly in a batch.
+    if (!tier || (tier->form != spp::SlabForm::kDirect && tier->form != spp::SlabForm::kSpp)) {
       exact.push_back(cases[i]);
       places.push_back(i);
       continue;
