@@ -31,10 +31,13 @@ SolveCases solverOf(const SlabModel& model, const pp::Settings& settings) {
     };
   return [&model, settings](std::span<const pp::SlabCase> cases) {
     std::vector<ChosenFluxes> results;
-    for (const pp::SlabCase& slab : cases) {
-      const SlabBudget budget = model.solve(homogeneousSlab(slab, settings))->budget();
-      results.push_back({{budget.reflectance, budget.transmittance, budget.direct}, {}});
-    }
+    for (const pp::SlabCase& slab : cases) try {
+        const SlabBudget budget = model.solve(homogeneousSlab(slab, settings))->budget();
+        results.push_back({{budget.reflectance, budget.transmittance, budget.direct}, {}});
+      } catch (const InvalidInput& e) {
+        throw InvalidInput(fmt::format("g = {}, omega = {}, thickness = {}, mu0 = {}: {}", slab.asymmetry, slab.albedo,
+                                       slab.thickness, slab.mu0, e.what()));
+      }
     return results;
   };
 }

@@ -1,15 +1,24 @@
 #pragma once
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace sunfleck {
 
 // The user's input is wrong. The message is the one line the user sees; the program ends with status 2.
 struct InvalidInput : std::invalid_argument {
-  using std::invalid_argument::invalid_argument;
+  explicit InvalidInput(std::string message) : std::invalid_argument(withoutNul(std::move(message))) {}
+
+ private:
+  // A zero byte of a quoted file would end the message before its rule.
+  static std::string withoutNul(std::string message) {
+    std::replace(message.begin(), message.end(), '\0', '?');
+    return message;
+  }
 };
 
 // Throws InvalidInput("<what> = <value>: must be <rule>") unless ok. Written for boundaries: hot code assumes valid

@@ -23,6 +23,10 @@ std::span<const std::uint8_t> cellOf(const SlabPlace& place) {
     static const SlabErrorMap kLeafMap(mapAxes(MapKind::kLeaves), detail::embeddedLeafErrors());
     return kLeafMap.at(coordinates);
   }
+  // For sharper backward peaks the exact solver, with the streams that the map was measured by, is not near enough
+  // itself.
+  constexpr double kLeastMappedAsymmetry = -0.7;
+  if (std::get<MappedParticles>(place.medium).asymmetry < kLeastMappedAsymmetry) return {};
   static const SlabErrorMap kParticleMap(mapAxes(MapKind::kParticles), detail::embeddedParticleErrors());
   return kParticleMap.at(coordinates);
 }

@@ -40,9 +40,9 @@ TEST(Directions, AxesAreOrthonormal) {
   }
 }
 
-// Check that spread axes integrate the second moments of the sphere: mean x_i x_j = delta_ij / 3. Axes of least energy are
-// isotropic but for few of them: 8 are 9e-3 off when they have come to rest (axes at random are 0.1 off). Larger sets are
-// Fibonacci points, whose error for such smooth functions falls faster than 1 / count.
+// Check that spread axes integrate the second moments of the sphere: mean x_i x_j = delta_ij / 3. Axes of least energy
+// are isotropic but for few of them: 8 are 9e-3 off when they have come to rest (axes at random are 0.1 off). Larger
+// sets are Fibonacci points, whose error for such smooth functions falls faster than 1 / count.
 TEST(Directions, SpreadAxesHaveIsotropicMoments) {
   for (int count : {6, 8, 11, 24, 100, 200}) {
     glm::dmat3 moments(0.);
