@@ -279,7 +279,7 @@ TEST(S14_FluxesWithin, KeepsTheErrorOfEach) {
       EXPECT_NEAR(found[i].fluxes.reflectance, exact[i].reflectance, max_error) << i << " " << found[i].model;
       EXPECT_NEAR(found[i].fluxes.transmittance, exact[i].transmittance, max_error) << i << " " << found[i].model;
     }
-    EXPECT_EQ(closed_forms > 10, max_error > 1e-3);  // SPP keeps 1 % in a fifth of the map's cells
+    EXPECT_EQ(closed_forms > 0, max_error > 1e-3);  // SPP keeps 1 % in a fifth of the map's cells, in few thick slabs
   }
 }
 
