@@ -4,41 +4,25 @@
 
 namespace sunfleck::pp {
 
-#ifdef SUNFLECK_X86
-namespace avx512 {
-extern const detail::Kernel the_kernel;
-}
-namespace avx2 {
-extern const detail::Kernel the_kernel;
-}
-#endif
 namespace baseline {
 extern const detail::Kernel the_kernel;
 }
-
-namespace detail {
-namespace {
-
-const Kernel& choose() {
 #ifdef SUNFLECK_X86
-  switch (instructionSet()) {
-    case InstructionSet::avx512:
-      return avx512::the_kernel;
-    case InstructionSet::avx2:
-      return avx2::the_kernel;
-    case InstructionSet::baseline:
-      break;
-  }
+namespace avx2 {
+extern const detail::Kernel the_kernel;
+}
+namespace avx512 {
+extern const detail::Kernel the_kernel;
+}
 #endif
-  return baseline::the_kernel;
+
+const detail::Kernel& detail::kernel() {
+#ifdef SUNFLECK_X86
+  static const Kernel& best = bestOf({&baseline::the_kernel, &avx2::the_kernel, &avx512::the_kernel});
+#else
+  static const Kernel& best = baseline::the_kernel;
+#endif
+  return best;
 }
 
-}  // namespace
-
-const Kernel& kernel() {
-  static const Kernel& chosen = choose();
-  return chosen;
-}
-
-}  // namespace detail
 }  // namespace sunfleck::pp

@@ -4,41 +4,25 @@
 
 namespace sunfleck::spp {
 
-#ifdef SUNFLECK_X86
-namespace avx512 {
-extern const detail::ArrayKernel the_kernel;
-}
-namespace avx2 {
-extern const detail::ArrayKernel the_kernel;
-}
-#endif
 namespace baseline {
 extern const detail::ArrayKernel the_kernel;
 }
-
-namespace detail {
-namespace {
-
-const ArrayKernel& choose() {
 #ifdef SUNFLECK_X86
-  switch (instructionSet()) {
-    case InstructionSet::avx512:
-      return avx512::the_kernel;
-    case InstructionSet::avx2:
-      return avx2::the_kernel;
-    case InstructionSet::baseline:
-      break;
-  }
+namespace avx2 {
+extern const detail::ArrayKernel the_kernel;
+}
+namespace avx512 {
+extern const detail::ArrayKernel the_kernel;
+}
 #endif
-  return baseline::the_kernel;
+
+const detail::ArrayKernel& detail::arrayKernel() {
+#ifdef SUNFLECK_X86
+  static const ArrayKernel& best = bestOf({&baseline::the_kernel, &avx2::the_kernel, &avx512::the_kernel});
+#else
+  static const ArrayKernel& best = baseline::the_kernel;
+#endif
+  return best;
 }
 
-}  // namespace
-
-const ArrayKernel& arrayKernel() {
-  static const ArrayKernel& chosen = choose();
-  return chosen;
-}
-
-}  // namespace detail
 }  // namespace sunfleck::spp
