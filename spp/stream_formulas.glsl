@@ -77,14 +77,21 @@ SHARED_FN ModeShapes modeShapes(Number rate, SHARED_IN(SlabPlace) at) {
   return shapes;
 }
 
+// u and v of one mode, or their means over a line of sight, by those of its parts.
+//   gained     what the beam makes of u: g D(k, K, z)
+//   even, odd  C and S
+//   direct     e^-Kz
+SHARED_FN ModeField modeSum(StreamMode mode, ModeShare share, Number gained, Number even, Number odd, Number direct) {
+  ModeField field;
+  field.sum = gained + share.even * even + share.odd * odd;
+  field.difference =
+      mode.entering * direct + mode.rate * gained - share.even * (mode.rate * (mode.rate * odd)) - share.odd * even;
+  return field;
+}
+
 // (S9) u and v of one mode.
 SHARED_FN ModeField modeField(StreamMode mode, ModeShare share, SHARED_IN(ModeShapes) shapes, SHARED_IN(SlabPlace) at) {
-  Number gained = mode.gain * shapes.gained;
-  ModeField field;
-  field.sum = gained + share.even * shapes.even + share.odd * shapes.odd;
-  field.difference = mode.entering * at.direct + mode.rate * gained -
-                     share.even * (mode.rate * (mode.rate * shapes.odd)) - share.odd * shapes.even;
-  return field;
+  return modeSum(mode, share, mode.gain * shapes.gained, shapes.even, shapes.odd, at.direct);
 }
 
 // (D(p, q, z) - D(p, r, z)) / (r - q) for rates that may be equal, symmetric in all three, given their exponentials.
@@ -134,11 +141,7 @@ SHARED_FN ModeField modeAlongDownward(StreamMode mode, ModeShare share, SHARED_I
   even *= view_rate;
   Number gained = mode.gain * view_rate *
                   rateQuotientOfThree(k, at.beam_rate, view_rate, at.depth, shapes.fade, at.direct, view_fade);
-  ModeField mean;
-  mean.sum = gained + share.even * even + share.odd * odd;
-  mean.difference =
-      mode.entering * beam + k * gained - share.even * (k * (k * odd)) - share.odd * even;
-  return mean;
+  return modeSum(mode, share, gained, even, odd, beam);
 }
 SHARED_FN ModeField modeAlongUpward(StreamMode mode, ModeShare share, SHARED_IN(ModeShapes) shapes,
                                     SHARED_IN(SlabPlace) at, Number view_rate, Number view_fade, Number beam) {
@@ -150,11 +153,7 @@ SHARED_FN ModeField modeAlongUpward(StreamMode mode, ModeShare share, SHARED_IN(
   even *= view_rate;
   Number gained = mode.gain * (view_rate * (shapes.gained - view_fade * shapes.gained_through) + beam) *
                   (Number(1.0f) / (view_rate + k));
-  ModeField mean;
-  mean.sum = gained + share.even * even + share.odd * odd;
-  mean.difference =
-      mode.entering * beam + k * gained - share.even * (k * (k * odd)) - share.odd * even;
-  return mean;
+  return modeSum(mode, share, gained, even, odd, beam);
 }
 
 // One number for each mode.
