@@ -1,10 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace sunfleck {
@@ -27,7 +30,15 @@ template <typename T>
 void require(bool ok, std::string_view what, const T& value, std::string_view rule) {
   if (ok) return;
   std::ostringstream message;
-  message << what << " = " << value << ": must be " << rule;
+  message << what << " = ";
+  if constexpr (std::is_floating_point_v<T>) {
+    // Every digit that sets it apart: rounded, a value outside of the rule might read as one within.
+    std::array<char, 64> digits;
+    message << std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  } else {
+    message << value;
+  }
+  message << ": must be " << rule;
   throw InvalidInput(message.str());
 }
 

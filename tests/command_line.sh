@@ -76,6 +76,7 @@ refuses "--albedo" trace leaf.obj --albedo -0.1
 refuses "--albedo" render leaf.obj -o x.png --albedo nan
 refuses "thickness" slab --thickness -1
 refuses "omega" slab --omega 2
+refuses "omega = 1.0000001: must be in [0, 1]" slab --omega 1.0000001
 refuses "g = 1" slab --g 1
 refuses "mu0" slab --mu0 0
 refuses "needs -o" slab-table

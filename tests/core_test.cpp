@@ -131,6 +131,23 @@ TEST(TreeMesh, FinishRefusesBrokenMeshes) {
   EXPECT_THROW(finish(only_wood, "test"), InvalidInput);
 }
 
+// Check that no wrong value reads as a right one: the nearest above 1 of either precision is not told as 1.
+TEST(Require, TellsAValueApartFromItsRule) {
+  const auto told = [](auto value) {
+    try {
+      require(value <= 1, "omega", value, "in [0, 1]");
+    } catch (const InvalidInput& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(told(1. + 0x1p-52), "omega = 1.0000000000000002: must be in [0, 1]");
+  EXPECT_EQ(told(1.f + 0x1p-23f), "omega = 1.0000001: must be in [0, 1]");
+  EXPECT_EQ(told(0.1f + 1.f), "omega = 1.1: must be in [0, 1]");
+  EXPECT_EQ(told(2), "omega = 2: must be in [0, 1]");
+  EXPECT_EQ(told(1.), "");
+}
+
 // Check that a file appears whole, and that a writer that fails leaves neither a file nor its temporary.
 TEST(WholeFile, IsWrittenWholeOrNotAtAll) {
   const fs::path folder = fs::temp_directory_path() / ("sunfleck_whole_file_" + std::to_string(::getpid()));
