@@ -60,6 +60,7 @@ int runBatch(const SlabOptions& options, const RunOptions& run) {
   const std::optional<double> max_error = shareOf(options.max_error);
   const std::vector<const SlabModel*> models = chosenModels(options);
   if (models.size() != 1) throw InvalidInput("--batch: must have one model");
+  if (models.front()->is_sample) throw InvalidInput("--batch: must have a model other than mc, too slow for a file");
   requireExactFor(options, models);
   if (run.json) throw InvalidInput("--json: does not go with --batch, which writes CSV");
   if (!options.output.empty()) requireWritable(options.output);

@@ -9,7 +9,6 @@
 #include "apps/number_text.hpp"
 #include "apps/slab_files.hpp"
 #include "core/require.hpp"
-#include "spp/stream_constants.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -125,7 +124,8 @@ std::vector<const SlabModel*> chosenModels(const SlabOptions& options) {
   for (const std::string& name : options.models) {
     const SlabModel* model = findSlabModel(name);
     if (!model)
-      throw InvalidInput("model = " + name + ": must be one of " + names + ", or nstream:N[:ORDERS], N from 1 to 8");
+      throw InvalidInput("model = " + name + ": must be one of " + names +
+                         ", or nstream:N[:ORDERS], N from 1 to 8, ORDERS from 1 to 2 N or all");
     if (std::ranges::find(models, model) != models.end())
       throw InvalidInput("model = " + name + ": stands there twice");
     models.push_back(model);
@@ -187,12 +187,7 @@ SlabQuestion slabQuestion(const SlabOptions& options) {
 }
 
 void requireCapable(const SlabModel& model, const SlabQuestion& question) {
-  if (takes(model, question.setup)) {
-    if (model.scope == SlabScope::slab_under_beam)
-      require(question.setup.problem.beam->mu0 >= spp::kLeastCosine, "mu0", question.setup.problem.beam->mu0,
-              fmt::format("at least {:g} for the model {}", spp::kLeastCosine, model.name));
-    return;
-  }
+  if (takes(model, question.setup)) return;
   throw InvalidInput(fmt::format("model = {}: must be pp for {}", model.name,
                                  model.scope == SlabScope::henyey_greenstein
                                      ? "moments, layers, leaves, a ground or a sky"

@@ -61,7 +61,7 @@ RadianceMap radianceMap(const SlabModel& model, SlabSolution& slab, double depth
   return map;
 }
 
-std::string subtitleOf(const SlabQuestion& question) {
+std::string subtitleOf(std::span<const SlabModel* const> models, const SlabQuestion& question) {
   const pp::Problem& problem = question.setup.problem;
   std::string text;
   if (const auto& slab = question.setup.homogeneous)
@@ -79,7 +79,9 @@ std::string subtitleOf(const SlabQuestion& question) {
   if (const double* sky = std::get_if<double>(&problem.above); sky != nullptr && *sky > 0.)
     text += fmt::format(", sky {:g}", *sky);
   if (problem.ground.albedo > 0.) text += fmt::format(", ground albedo {:g}", problem.ground.albedo);
-  return text + fmt::format("; N = {}", question.setup.settings.streams);
+  if (std::ranges::find(models, &exactSlabModel()) != models.end())
+    text += fmt::format("; N = {}", question.setup.settings.streams);
+  return text;
 }
 
 }  // namespace
@@ -100,7 +102,7 @@ std::string slabPlot(std::span<const SlabModel* const> models, const SlabQuestio
   RadiancePlot plot{.title = fmt::format("Diffuse radiance in the principal plane [{}{}]",
                                          beam ? "1/sr, per unit irradiance of the beam" : "unit of the sky's",
                                          logarithmic ? "; logarithmic" : ""),
-                    .subtitle = subtitleOf(question),
+                    .subtitle = subtitleOf(models, question),
                     .logarithmic = logarithmic};
   if (beam) plot.beam_mu0 = beam->mu0;
   for (const SlabModel* model : models) {

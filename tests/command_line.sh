@@ -156,7 +156,10 @@ refuses "must be pp" slab --model spp --sky 1
 refuses "must be pp" slab --model pp,spp --ground-albedo 0.5
 refuses "must be pp for layers, a hot spot" slab --model best --leaves spherical --hot-spot 0.1
 refuses "model = mc: must be pp" slab --model mc --leaves spherical
-for name in nstream:0 nstream:9 nstream:2:5 nstream:2:0 nstream: nstream:2:; do refuses "model = $name" slab --model $name; done
+for name in nstream:0 nstream:9 nstream: ; do refuses "model = $name: must be" slab --model $name; done
+for name in nstream:2:5 nstream:2:0 nstream:2: nstream:8:17; do
+  refuses "ORDERS from 1 to 2 N or all" slab --model $name
+done
 for leaves in none spherical:2 ellipsoidal ellipsoidal:0 ellipsoidal:x beta:57 beta:90,20 beta:57,0 beta:57,20,3 ""; do
   refuses "lea" slab --leaves "$leaves"
 done
@@ -208,7 +211,9 @@ refuses "nowhere" slab --plot nowhere/x.svg
 refuses "folder" bench slab -o empty/folder
 refuses "frobnicate" bench frobnicate
 refuses "must not be empty" bench slab -o ""
-refuses "mu0 = 1e-50: must be" slab --model twostream --mu0 1e-50
+refuses "mu0 = 1e-50: must be at least 1e-07" slab --model twostream --mu0 1e-50
+printf 'g,omega,thickness,mu0\n0,0.9,1,1e-50\n' >grazing.csv
+refuses "mu0 = 1e-50: must be at least 1e-07" slab --model sppr --batch grazing.csv
 refuses "nosuch" bench directions nosuch -o dirs
 refuses "even" validate cherry --directions 7 -o dirs
 refuses "--frobnicate" tables --frobnicate
@@ -237,6 +242,7 @@ refuses "nowhere" slab --batch many.csv -o nowhere/x.csv
 refuses "folder" slab --batch many.csv -o folder
 refuses "--json" slab --batch many.csv --json
 refuses "one model" slab --batch many.csv --model pp,spp
+refuses "other than mc" slab --batch many.csv --model mc
 refuses "excludes" slab --batch many.csv --omega 0.5
 
 does "COMMAND" --help
@@ -314,6 +320,9 @@ does "are not mapped for moments" slab --max-error 3% --moments moments.txt
 does "N = 16 is within" slab --max-error 1% --mu0 0.01
 does "leaf irradiance" slab --leaves erectophile --thickness 3 --depths 1
 does "wrote chosen.svg" slab --max-error 2% --plot chosen.svg
+grep -q "N =" chosen.svg && fail "slab --max-error --plot: a closed form has no N of the exact solver"
+grep -q "N = " field.svg || fail "slab --plot: the N of the exact solver is not told"
+does "nstream:1 (1 stream, 2 azimuth orders, refined)" slab --model nstream:1
 "$program" slab --max-error 1% --depths 1 | grep -q "radiance \[" && fail "slab --max-error: radiance nobody asked for"
 does "g,omega,thickness,mu0,reflectance,transmittance,direct,model" slab --max-error 1% --batch cases.csv --quiet
 "$program" slab --max-error 1% --batch many.csv -o chosen.csv 2>turns.txt || fail "slab --max-error --batch: status $?"

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/require.hpp"
 #include "render/reference/slab_trace.hpp"
 #include "spp/forward_share.hpp"
 #include "spp/slab.hpp"
@@ -132,7 +133,10 @@ class RefinedSlab : public SlabSolution {
       : mu0_(setup.problem.beam->mu0),
         thickness_(thicknessOf(setup)),
         streams_(2 * constants.streams()),
-        slab_(std::move(constants), thickness_) {}
+        slab_(std::move(constants), thickness_) {
+    require(mu0_ >= spp::kLeastCosine, "mu0", mu0_,
+            fmt::format("at least {:g} for a refined closed form", spp::kLeastCosine));
+  }
   SlabBudget budget() const override {
     const double reflectance = slab_.reflectance(), transmittance = slab_.transmittance();
     return {reflectance, transmittance, slab_.light(thickness_).direct, std::max(0., 1. - reflectance - transmittance)};
@@ -265,7 +269,8 @@ const std::vector<SlabModel>& streamModels() {
     for (int n = 1; n <= kMostStreams; ++n) {
       const auto add = [&](const std::string& suffix, int orders) {
         list.push_back(closedForm(fmt::format("nstream:{}{}", n, suffix),
-                                  fmt::format("{} streams, {} azimuth orders, refined", n, orders),
+                                  fmt::format("{} stream{}, {} azimuth order{}, refined", n, n == 1 ? "" : "s", orders,
+                                              orders == 1 ? "" : "s"),
                                   nStream(n, orders)));
       };
       add("", 2);
