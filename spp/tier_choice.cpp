@@ -17,7 +17,7 @@ double saturated(double depth) {
   return std::isinf(depth) ? kFaceDepth : depth / (1. + depth / kFaceDepth);
 }
 
-std::span<const std::uint8_t> cellOf(const SlabPlace& place) {
+std::span<const std::uint8_t> cellOf(const MappedPlace& place) {
   const std::array<double, kMostMapAxes> coordinates = mapCoordinates(place);
   if (std::holds_alternative<MappedLeaves>(place.medium)) {
     static const SlabErrorMap kLeafMap(mapAxes(MapKind::kLeaves), detail::embeddedLeafErrors());
@@ -71,7 +71,7 @@ std::vector<MapAxis> mapAxes(MapKind kind) {
           {"mu0", {0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.}, {1.}}};
 }
 
-std::array<double, kMostMapAxes> mapCoordinates(const SlabPlace& place) {
+std::array<double, kMostMapAxes> mapCoordinates(const MappedPlace& place) {
   const double depth = relativeDepth(place.depth, place.thickness);
   if (const auto* leaves = std::get_if<MappedLeaves>(&place.medium)) {
     const double albedo = leaves->reflectance + leaves->transmittance;
@@ -87,10 +87,10 @@ std::array<double, kMostMapAxes> mapCoordinates(const SlabPlace& place) {
   return {1. - particles.albedo, particles.asymmetry, place.thickness, depth, place.mu0, 0.};
 }
 
-SlabPlace placeAt(MapKind kind, std::span<const double> coordinates) {
+MappedPlace placeAt(MapKind kind, std::span<const double> coordinates) {
   const std::size_t axes = coordinates.size();
   const double albedo = 1. - coordinates[0], thickness = coordinates[axes - 3];
-  SlabPlace place{
+  MappedPlace place{
       .thickness = thickness, .depth = depthAt(coordinates[axes - 2], thickness), .mu0 = coordinates[axes - 1]};
   if (kind == MapKind::kLeaves)
     place.medium = MappedLeaves{static_cast<std::size_t>(coordinates[1]), coordinates[2] * albedo,
@@ -118,20 +118,20 @@ double depthAt(double relative_depth, double thickness) {
   return 0.5 * (low + high);
 }
 
-double promisedError(const SlabTier& tier, const SlabPlace& place, SlabQuantity quantity) {
+double promisedError(const SlabTier& tier, const MappedPlace& place, SlabQuantity quantity) {
   const std::span<const std::uint8_t> cell = cellOf(place);
   return SlabErrorMap::error(cell.empty() ? SlabErrorMap::kNoPromise : cell[SlabErrorMap::column(tier, quantity)]);
 }
 
-const SlabTier* cheapestTier(const SlabPlace& place, std::span<const SlabQuantity> quantities, double max_error) {
+const SlabTier* cheapestTier(const MappedPlace& place, std::span<const SlabQuantity> quantities, double max_error) {
   return cheapestTier(cellOf(place), quantities, max_error);
 }
 
-const SlabTier* cheapestTier(std::span<const SlabPlace> places, std::span<const SlabQuantity> quantities,
+const SlabTier* cheapestTier(std::span<const MappedPlace> places, std::span<const SlabQuantity> quantities,
                              double max_error) {
   assert(!places.empty() && !quantities.empty());
   std::array<std::uint8_t, 255> largest{};
-  for (const SlabPlace& place : places) {
+  for (const MappedPlace& place : places) {
     const std::span<const std::uint8_t> cell = cellOf(place);
     if (cell.empty()) return nullptr;
     std::ranges::transform(cell, largest, largest.begin(), [](auto a, auto b) { return std::max(a, b); });

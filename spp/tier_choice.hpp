@@ -29,7 +29,7 @@ Medium mediumOf(const MappedMedium& mapped);
 std::optional<MappedMedium> mappedMedium(const Medium& medium);  // nothing for another
 
 // A depth in a homogeneous slab on black ground under a beam.
-struct SlabPlace {
+struct MappedPlace {
   MappedMedium medium;
   double thickness = 1.;  // w: optical, of leaves leaf area index [1]; may be infinite
   double depth = 0.;      // z, of its kind [1], 0 .. w
@@ -41,8 +41,8 @@ struct SlabPlace {
 enum class MapKind { kParticles, kLeaves };
 inline constexpr std::size_t kMostMapAxes = 6;
 std::vector<MapAxis> mapAxes(MapKind kind);
-std::array<double, kMostMapAxes> mapCoordinates(const SlabPlace& place);
-SlabPlace placeAt(MapKind kind, std::span<const double> coordinates);
+std::array<double, kMostMapAxes> mapCoordinates(const MappedPlace& place);
+MappedPlace placeAt(MapKind kind, std::span<const double> coordinates);
 
 // t = A / (A + B), A = z / (1 + z / 4), B = (w - z) / (1 + (w - z) / 4): near z / w in a thin slab, and in a thick one
 // fine at both faces; 1/2 in the middle and deep in a half space. depthAt is the inverse; t < 1/2 if w is infinite.
@@ -50,13 +50,13 @@ double relativeDepth(double depth, double thickness);
 double depthAt(double relative_depth, double thickness);
 
 // The error that a closed form keeps; infinite where the map promises nothing.
-double promisedError(const SlabTier& tier, const SlabPlace& place, SlabQuantity quantity);
+double promisedError(const SlabTier& tier, const MappedPlace& place, SlabQuantity quantity);
 
 // The cheapest closed form that keeps max_error of all `quantities` at a place, or at every one of several; nullptr
 // where none is known to. There must be a place and a quantity. The first call for a kind of medium unpacks its map;
 // the others allocate nothing and take a tenth of a microsecond a place.
-const SlabTier* cheapestTier(const SlabPlace& place, std::span<const SlabQuantity> quantities, double max_error);
-const SlabTier* cheapestTier(std::span<const SlabPlace> places, std::span<const SlabQuantity> quantities,
+const SlabTier* cheapestTier(const MappedPlace& place, std::span<const SlabQuantity> quantities, double max_error);
+const SlabTier* cheapestTier(std::span<const MappedPlace> places, std::span<const SlabQuantity> quantities,
                              double max_error);
 
 }  // namespace sunfleck::spp

@@ -128,7 +128,7 @@ TEST(S14_MapCoordinates, AreThoseOfThePlace) {
   for (const auto& [kind, point] : {std::pair{spp::MapKind::kParticles, std::vector{0.05, 0.3, 2., 0.2, 0.7}},
                                     std::pair{spp::MapKind::kLeaves, std::vector{0.1, 3., 0.55, 4., 0.2, 0.7}}}) {
     EXPECT_EQ(spp::mapAxes(kind).size(), point.size());
-    const spp::SlabPlace place = spp::placeAt(kind, point);
+    const spp::MappedPlace place = spp::placeAt(kind, point);
     const auto found = spp::mapCoordinates(place);
     for (std::size_t i = 0; i < point.size(); ++i) EXPECT_NEAR(found[i], point[i], 1e-14) << i;  // roundings
     const std::optional<spp::MappedMedium> again = spp::mappedMedium(spp::mediumOf(place.medium));
@@ -184,21 +184,21 @@ TEST(S14_PromisedError, IsKeptOffTheGrid) {
 
 // Check that nothing is promised off the maps: beams flatter, scattering sharper than was measured, radiance in leaves.
 TEST(S14_PromisedError, IsNoneOffTheMap) {
-  for (const spp::SlabPlace& place :
-       {spp::SlabPlace{.mu0 = 0.01}, spp::SlabPlace{spp::MappedParticles{0.95}},
-        spp::SlabPlace{spp::MappedParticles{-0.95}}, spp::SlabPlace{.medium = spp::MappedLeaves{}, .mu0 = 0.01}}) {
+  for (const spp::MappedPlace& place :
+       {spp::MappedPlace{.mu0 = 0.01}, spp::MappedPlace{spp::MappedParticles{0.95}},
+        spp::MappedPlace{spp::MappedParticles{-0.95}}, spp::MappedPlace{.medium = spp::MappedLeaves{}, .mu0 = 0.01}}) {
     EXPECT_EQ(spp::promisedError(tierNamed("nstream:8:16"), place, SlabQuantity::kFlux), kInfinite);
     EXPECT_EQ(spp::cheapestTier(place, kAll, 1.), nullptr);
   }
-  const spp::SlabPlace leaves{spp::MappedLeaves{}};
+  const spp::MappedPlace leaves{spp::MappedLeaves{}};
   EXPECT_LT(spp::promisedError(tierNamed("nstream:8:16"), leaves, SlabQuantity::kFlux), 0.01);
   EXPECT_EQ(spp::promisedError(tierNamed("nstream:8:16"), leaves, SlabQuantity::kRadiance), kInfinite);
 }
 
 // Check that of several places the worst decides.
 TEST(S14_CheapestTier, ServesAllPlaces) {
-  const spp::SlabPlace easy{.medium = spp::MappedParticles{0., 0.1}, .thickness = 0.5, .mu0 = 0.8};
-  const spp::SlabPlace hard{.medium = spp::MappedParticles{0.6, 0.99}, .thickness = 5., .depth = 2., .mu0 = 0.6};
+  const spp::MappedPlace easy{.medium = spp::MappedParticles{0., 0.1}, .thickness = 0.5, .mu0 = 0.8};
+  const spp::MappedPlace hard{.medium = spp::MappedParticles{0.6, 0.99}, .thickness = 5., .depth = 2., .mu0 = 0.6};
   const spp::SlabTier* one = spp::cheapestTier(easy, kAll, 0.02);
   const spp::SlabTier* other = spp::cheapestTier(hard, kAll, 0.02);
   ASSERT_TRUE(one && other);

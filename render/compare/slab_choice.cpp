@@ -35,7 +35,7 @@ std::string whyNotMapped(const SlabQuestion& question) {
   return leaves && asksRadiance(question) ? "radiance in leaves" : "";
 }
 
-double promiseOf(const spp::SlabTier& tier, spp::SlabPlace slab, const SlabQuestion& question) {
+double promiseOf(const spp::SlabTier& tier, spp::MappedPlace slab, const SlabQuestion& question) {
   const auto at = [&](double depth, SlabQuantity quantity) {
     slab.depth = depth;
     return spp::promisedError(tier, slab, quantity);
@@ -89,9 +89,9 @@ SlabChoice chooseModel(const SlabQuestion& question, double max_error) {
     return choice;
   }
   const pp::Layer& layer = question.setup.problem.layers.front();
-  const spp::SlabPlace slab{.medium = spp::mappedMedium(layer.medium).value(),
-                            .thickness = layer.thickness,
-                            .mu0 = question.setup.problem.beam->mu0};
+  const spp::MappedPlace slab{.medium = spp::mappedMedium(layer.medium).value(),
+                              .thickness = layer.thickness,
+                              .mu0 = question.setup.problem.beam->mu0};
   const bool radiance = asksRadiance(question);
   for (const spp::SlabTier* tier : spp::tiersByCost(radiance)) {
     choice.promises.push_back(
@@ -136,10 +136,10 @@ std::vector<ChosenFluxes> fluxesWithin(double max_error, std::span<const pp::Sla
   std::vector<pp::SlabCase> exact;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const spp::SlabPlace top{.medium = spp::MappedParticles{cases[i].asymmetry, cases[i].albedo},
-                             .thickness = cases[i].thickness,
-                             .mu0 = cases[i].mu0};
-    spp::SlabPlace bottom = top;
+    const spp::MappedPlace top{.medium = spp::MappedParticles{cases[i].asymmetry, cases[i].albedo},
+                               .thickness = cases[i].thickness,
+                               .mu0 = cases[i].mu0};
+    spp::MappedPlace bottom = top;
     bottom.depth = bottom.thickness;
     const std::array faces{top, bottom};
     const spp::SlabTier* tier =

@@ -128,7 +128,7 @@ class Cells {
     for (const Sample& sample : slab.samples) values.push_back(sample.value);
     const bool bottomless = std::isinf(values[axes_.thickness()]);
     values[axes_.depth()] = 0.;
-    const spp::SlabPlace place = spp::placeAt(kind_, values);
+    const spp::MappedPlace place = spp::placeAt(kind_, values);
     std::vector<const Sample*> samples;
     std::vector<double> depths;
     for (const Sample& sample : depths_[slab.depths]) {
@@ -258,7 +258,7 @@ std::vector<CheckedPlace> checkedPlaces(MapKind kind, int count, unsigned seed, 
       values.push_back(axes.within(a, cell, random.uniformDouble()));
     }
     if (std::isinf(values[axes.thickness()])) values[axes.depth()] *= kDeep;
-    const spp::SlabPlace place = spp::placeAt(kind, values);
+    const spp::MappedPlace place = spp::placeAt(kind, values);
     TierErrorSettings finer{.streams = 64, .cosines = 16, .azimuths = 20};
     if (settingsFor(place.medium).cosines == 0) finer.cosines = 0;
     places[i] = {place, slabTierErrors(place, std::array{place.depth}, finer)};

@@ -19,7 +19,7 @@ spp::SlabErrorMap measuredErrors(spp::MapKind kind, const Progress& progress = {
 
 // Random places on a map, spread evenly over its cells, and the errors there, by a finer exact solution.
 struct CheckedPlace {
-  spp::SlabPlace place;
+  spp::MappedPlace place;
   std::vector<TierErrors> errors;  // of each tier
 };
 std::vector<CheckedPlace> checkedPlaces(spp::MapKind kind, int count, unsigned seed, const Progress& progress = {});

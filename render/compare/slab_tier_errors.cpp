@@ -16,7 +16,7 @@ struct Directions {
   std::vector<double> mus, weights, phis;  // the weights' sum is 1
 
   // Radiance does not depend on the azimuth where the phase function or the beam has none.
-  Directions(const spp::SlabPlace& slab, const TierErrorSettings& settings) {
+  Directions(const spp::MappedPlace& slab, const TierErrorSettings& settings) {
     if (settings.cosines == 0) return;
     const DoubleGauss rule = doubleGauss(2 * settings.cosines);
     for (std::size_t i = 0; i < rule.mu.size(); ++i)
@@ -54,7 +54,7 @@ double radianceError(const Light& light, const Light& exact, std::size_t depth, 
 
 }  // namespace
 
-std::vector<TierErrors> slabTierErrors(const spp::SlabPlace& slab, std::span<const double> depths,
+std::vector<TierErrors> slabTierErrors(const spp::MappedPlace& slab, std::span<const double> depths,
                                        const TierErrorSettings& settings) {
   const Directions directions(slab, settings);
   const SlabSetup setup =

@@ -19,7 +19,7 @@ struct TierErrorSettings {
 // solver: one entry for each tier of spp::slabTiers() and each depth, the tiers of a depth side by side. The slab's own
 // depth is not asked for.
 using TierErrors = std::array<double, spp::kSlabQuantities>;
-std::vector<TierErrors> slabTierErrors(const spp::SlabPlace& slab, std::span<const double> depths,
+std::vector<TierErrors> slabTierErrors(const spp::MappedPlace& slab, std::span<const double> depths,
                                        const TierErrorSettings& settings = {});
 
 }  // namespace sunfleck
