@@ -64,10 +64,11 @@ const SlabModel kModelOf{
 // (R9) Check that the weights of the directions are those of the sphere: they integrate 1, mu^2 and mu^20 exactly.
 TEST(R9_SlabTableGrid, IntegratesOverTheSphere) {
   const SlabTableGrid grid = slabTableGrid(10.);
-  ASSERT_EQ(grid.mus.size(), grid.weights.size());
+  ASSERT_EQ(grid.sphere.mus.size(), grid.sphere.weights.size());
   for (const int power : {0, 2, 20}) {
     double integral = 0.;
-    for (std::size_t i = 0; i < grid.mus.size(); ++i) integral += grid.weights[i] * std::pow(grid.mus[i], power);
+    for (std::size_t i = 0; i < grid.sphere.mus.size(); ++i)
+      integral += grid.sphere.weights[i] * std::pow(grid.sphere.mus[i], power);
     EXPECT_NEAR(integral, 1. / (power + 1), 1e-14) << power;  // some roundings of numbers below 1
   }
   EXPECT_EQ(grid.depths.size(), 11u);
@@ -285,12 +286,12 @@ TEST(SlabBench, WritesALineForEachRow) {
 TEST(SlabContestants, AnswerTheSameQuestion) {
   SlabCourse course = slabCourse();
   course.slabs = {course.slabs[2], course.slabs[9]};
-  course.phis.resize(2);
+  course.sphere.phis.resize(2);
   const auto exact = exactContestant(course, 32)->answer();
   const auto near = [&](SlabContestant& contestant, double irradiance, double radiance) {
     const auto found = contestant.answer();
     ASSERT_EQ(found.powers.size(), course.places());
-    ASSERT_EQ(found.radiances.size(), course.places() * course.directions());
+    ASSERT_EQ(found.radiances.size(), course.places() * course.sphere.directions());
     for (std::size_t i = 0; i < exact.powers.size(); ++i)
       EXPECT_NEAR(found.powers[i], exact.powers[i], irradiance * exact.powers[i]);
     double squares = 0.;

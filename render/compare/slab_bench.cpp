@@ -47,9 +47,9 @@ void addErrors(const SlabCourse& course, const Answer& found, const Answer& exac
                                std::abs(found.flux_down[i] - exact.flux_down[i])});
   double radiance = 0.;
   for (std::size_t i = 0; i < exact.radiances.size(); ++i)
-    radiance += course.weights[i / course.phis.size() % course.mus.size()] *
+    radiance += course.sphere.weights[i / course.sphere.phis.size() % course.sphere.mus.size()] *
                 std::pow(found.radiances[i] - exact.radiances[i], 2);
-  row.radiance_error = std::sqrt(radiance / static_cast<double>(course.places() * course.phis.size()));
+  row.radiance_error = std::sqrt(radiance / static_cast<double>(course.places() * course.sphere.phis.size()));
   if (!(row.irradiance_error < 1. && row.radiance_error < 0.2))
     throw std::runtime_error(fmt::format("{}: is no approximation: {:.3g} off in irradiance, {:.3g} in radiance",
                                          row.model, row.irradiance_error, row.radiance_error));

@@ -12,7 +12,6 @@
 #include "pp_solver/slab_table.hpp"
 #include "pp_solver/solver.hpp"
 #include "render/compare/slab_models.hpp"
-#include "scattering/double_gauss.hpp"
 #include "spp/forward_share.hpp"
 #include "spp/slab_arrays.hpp"
 #include "spp/slab_tiers.hpp"
@@ -52,7 +51,7 @@ class TierContestant : public SlabContestant {
   }
 
   Answer answer() override {
-    const std::size_t directions = course_.directions();
+    const std::size_t directions = course_.sphere.directions();
     Answer answer{.powers = std::vector<double>(course_.places()),
                   .flux_down = answer.powers,
                   .flux_up = answer.powers,
@@ -88,7 +87,8 @@ class TierContestant : public SlabContestant {
   std::size_t evaluateRadiances() override {
     for (std::size_t b = 0; b < blocks_.size(); ++b)
       for (std::size_t half = 0; half < 2; ++half)
-        kept_ = double{radiance(blocks_[b], ((2 * b + half) * course_.phis.size() + b) % course_.directions())[b]};
+        kept_ = double{
+            radiance(blocks_[b], ((2 * b + half) * course_.sphere.phis.size() + b) % course_.sphere.directions())[b]};
     return 2 * blocks_.size() * kBlockSize;
   }
 
@@ -113,8 +113,8 @@ class TierContestant : public SlabContestant {
                        .forward_share = static_cast<float>(spp::forwardShare(slab.asymmetry, slab.mu0)),
                        .constants = constants,
                        .arrays = spp::StreamArrays(constants)});
-    for (const double mu : course_.mus)
-      for (const double phi : course_.phis) blocks_.back().views.push_back(blocks_.back().arrays.view(mu, phi));
+    for (const double mu : course_.sphere.mus)
+      for (const double phi : course_.sphere.phis) blocks_.back().views.push_back(blocks_.back().arrays.view(mu, phi));
     return blocks_.back();
   }
   static spp::StreamConstants constantsOf(const spp::SlabTier& tier, const spp::BeamInMedium& beam) {
@@ -135,7 +135,7 @@ class TierContestant : public SlabContestant {
     if (form_ == spp::SlabForm::kSpp) {
       spp::sppRadiance(block.depth, block.thickness, static_cast<float>(block.of.mu0),
                        static_cast<float>(block.of.albedo), block.forward_share, first_, second_);
-      return course_.mus[direction / course_.phis.size()] > 0. ? first_ : second_;
+      return course_.sphere.mus[direction / course_.sphere.phis.size()] > 0. ? first_ : second_;
     }
     block.arrays.refinedRadiance(block.depth, block.thickness, block.views[direction], first_);
     return first_;
@@ -160,8 +160,8 @@ class TableContestant : public SlabContestant {
     for (const Place& place : places_) {
       const pp::SlabTablePowers powers = place.table->powers(place.thickness, place.depth, place.mu0);
       answer.powers.push_back(powers.down + powers.direct + powers.up);
-      for (const double mu : course_.mus)
-        for (const double phi : course_.phis) answer.radiances.push_back(radianceAt(place, mu, phi));
+      for (const double mu : course_.sphere.mus)
+        for (const double phi : course_.sphere.phis) answer.radiances.push_back(radianceAt(place, mu, phi));
     }
     return answer;
   }
@@ -174,7 +174,8 @@ class TableContestant : public SlabContestant {
   std::size_t evaluateRadiances() override {
     float sum = 0.F;
     for (std::size_t i = 0; i < places_.size(); ++i)
-      sum += radianceAt(places_[i], course_.mus[i % course_.mus.size()], course_.phis[i % course_.phis.size()]);
+      sum += radianceAt(places_[i], course_.sphere.mus[i % course_.sphere.mus.size()],
+                        course_.sphere.phis[i % course_.sphere.phis.size()]);
     kept_ = sum;
     return places_.size();
   }
@@ -211,8 +212,8 @@ class ExactContestant : public SlabContestant {
         const double mu0 = course_.slabs[i].mu0;
         add(answer, 4. * pi * fluxes.mean_intensity, (fluxes.down + fluxes.direct) / mu0, fluxes.up / mu0);
       }
-      std::vector<double> radiances(depths.size() * course_.directions());
-      solver_.radiances(depths, course_.mus, course_.phis, radiances);
+      std::vector<double> radiances(depths.size() * course_.sphere.directions());
+      solver_.radiances(depths, course_.sphere.mus, course_.sphere.phis, radiances);
       answer.radiances.insert(answer.radiances.end(), radiances.begin(), radiances.end());
     }
     evaluateBatch();
@@ -238,7 +239,7 @@ class ExactContestant : public SlabContestant {
     double sum = 0.;
     for (std::size_t i = 0; i < problems_.size(); ++i) {
       solver_.solve(problems_[i]);
-      sum += solver_.radiance(0.25 * course_.slabs[i].thickness, course_.mus[i % course_.mus.size()], 1.);
+      sum += solver_.radiance(0.25 * course_.slabs[i].thickness, course_.sphere.mus[i % course_.sphere.mus.size()], 1.);
     }
     kept_ = sum;
     return problems_.size();
@@ -268,13 +269,7 @@ SlabCourse slabCourse() {
       for (const double mu0 : {1., 0.5})
         course.slabs.push_back({.asymmetry = asymmetry, .albedo = 0.95, .thickness = thickness, .mu0 = mu0});
   course.shares = {0., 0.25, 0.5, 0.75, 1.};
-  const DoubleGauss rule = doubleGauss(12);
-  for (std::size_t i = 0; i < rule.mu.size(); ++i)
-    for (const double half : {1., -1.}) {
-      course.mus.push_back(half * rule.mu[i]);
-      course.weights.push_back(0.5 * rule.weight[i]);
-    }
-  for (int j = 0; j < 6; ++j) course.phis.push_back((j + 0.5) * pi / 6.);
+  course.sphere = sphereRule(6, 6);
   return course;
 }
 

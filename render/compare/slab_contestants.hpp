@@ -6,6 +6,7 @@
 
 #include "core/progress.hpp"
 #include "pp_solver/slab_batch.hpp"
+#include "render/compare/sphere_rule.hpp"
 #include "spp/slab_tiers.hpp"
 
 namespace sunfleck {
@@ -14,10 +15,9 @@ namespace sunfleck {
 // and at 60 degrees; five depths of each from face to face, and 72 directions at each.
 struct SlabCourse {
   std::vector<pp::SlabCase> slabs;
-  std::vector<double> shares;              // depths over the thickness
-  std::vector<double> mus, weights, phis;  // the weights' sum is 1
+  std::vector<double> shares;  // depths over the thickness
+  SphereRule sphere;
   std::size_t places() const { return slabs.size() * shares.size(); }
-  std::size_t directions() const { return mus.size() * phis.size(); }
 };
 SlabCourse slabCourse();
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <mutex>
 #include <numbers>
@@ -18,20 +17,14 @@ constexpr int kAzimuths = 16;  // midpoints of a half circle: exact for radiance
 
 // A hemisphere's cosines: 16 nodes on (0, 1), enough for radiance that is smooth in each hemisphere; its steepness at
 // grazing angles leaves 1e-4 of the RMS.
-using Gauss = boost::math::quadrature::gauss<double, 16>;
+constexpr int kCosines = 16;
 
 }  // namespace
 
 SlabTableGrid slabTableGrid(double thickness) {
   SlabTableGrid grid;
   for (int depth = 0; depth <= 10 && depth <= thickness; ++depth) grid.depths.push_back(depth);
-  for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i)
-    for (const double side : {-1., 1.})
-      for (const double half : {-1., 1.}) {
-        grid.mus.push_back(half * 0.5 * (1. + side * Gauss::abscissa()[i]));
-        grid.weights.push_back(0.25 * Gauss::weights()[i]);
-      }
-  for (int j = 0; j < kAzimuths; ++j) grid.phis.push_back((j + 0.5) * std::numbers::pi / kAzimuths);
+  grid.sphere = sphereRule(kCosines, kAzimuths);
   for (int degrees = 0; degrees <= 60; degrees += 10) grid.mu0s.push_back(std::cos(degrees * std::numbers::pi / 180.));
   return grid;
 }
@@ -39,21 +32,21 @@ SlabTableGrid slabTableGrid(double thickness) {
 std::vector<double> slabRadianceErrors(std::span<const SlabModel* const> models, double asymmetry, double albedo,
                                        double thickness, int streams) {
   const SlabTableGrid grid = slabTableGrid(thickness);
-  const std::size_t count = grid.depths.size() * grid.mus.size() * grid.phis.size();
+  const std::size_t count = grid.depths.size() * grid.sphere.directions();
   std::vector<double> exact(count), approximate(count), errors(models.size(), 0.);
   for (const double mu0 : grid.mu0s) {
     const SlabSetup setup = homogeneousSlab(
         {.asymmetry = asymmetry, .albedo = albedo, .thickness = thickness, .mu0 = mu0}, {.streams = streams});
-    exactSlabModel().solve(setup)->radiances(grid.depths, grid.mus, grid.phis, exact);
+    exactSlabModel().solve(setup)->radiances(grid.depths, grid.sphere.mus, grid.sphere.phis, exact);
     for (std::size_t m = 0; m < models.size(); ++m) {
-      models[m]->solve(setup)->radiances(grid.depths, grid.mus, grid.phis, approximate);
+      models[m]->solve(setup)->radiances(grid.depths, grid.sphere.mus, grid.sphere.phis, approximate);
       for (std::size_t k = 0; k < count; ++k) {
         const double deviation = approximate[k] - exact[k];
-        errors[m] += grid.weights[k / grid.phis.size() % grid.mus.size()] * deviation * deviation;
+        errors[m] += grid.sphere.weights[k / grid.sphere.phis.size() % grid.sphere.mus.size()] * deviation * deviation;
       }
     }
   }
-  const auto parts = static_cast<double>(grid.mu0s.size() * grid.depths.size() * grid.phis.size());
+  const auto parts = static_cast<double>(grid.mu0s.size() * grid.depths.size() * grid.sphere.phis.size());
   for (double& error : errors) error = std::sqrt(error / parts);
   return errors;
 }

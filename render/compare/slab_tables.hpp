@@ -6,6 +6,7 @@
 
 #include "core/progress.hpp"
 #include "render/compare/slab_models.hpp"
+#include "render/compare/sphere_rule.hpp"
 
 namespace sunfleck {
 
@@ -20,11 +21,9 @@ struct SlabTableRow {
 // The directions, depths and angles over which Tables 1 and 2 take their mean. The paper says "a number of directions
 // and depth values"; these are ours.
 struct SlabTableGrid {
-  std::vector<double> depths;   // 0, 1 ... 10 or the thickness
-  std::vector<double> mus;      // cosines of both hemispheres, Gauss-Legendre in each
-  std::vector<double> weights;  // of the cosines; their sum is 1
-  std::vector<double> phis;     // of equal weight over the half circle that stands for the other by symmetry
-  std::vector<double> mu0s;     // of beams 0, 10 ... 60 degrees from the normal
+  std::vector<double> depths;  // 0, 1 ... 10 or the thickness
+  SphereRule sphere;
+  std::vector<double> mu0s;  // of beams 0, 10 ... 60 degrees from the normal
 };
 SlabTableGrid slabTableGrid(double thickness);
 
