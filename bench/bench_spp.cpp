@@ -9,6 +9,7 @@
 #include "core/random.hpp"
 #include "spp/slab.hpp"
 #include "spp/slab_arrays.hpp"
+#include "spp/stream_slab.hpp"
 
 namespace sunfleck::spp {
 #ifdef SUNFLECK_X86
@@ -134,7 +135,7 @@ BENCHMARK(nStream)->Name("nstream")->ArgName("n")->Arg(1)->Arg(2)->Arg(3)->Arg(4
 void refinedRadiance(benchmark::State& state, const spp::StreamConstants& constants, double mu) {
   Leaves leaves;
   const spp::StreamArrays arrays(constants);
-  const auto view = arrays.view(mu, 1.);
+  const auto view = spp::streamView<float>(constants, mu, 1.);
   const auto evaluate = [&] { arrays.refinedRadiance(leaves.depth, leaves.thickness, view, leaves.down); };
   evaluate();
   const auto exact = [&](double depth, double thickness) {

@@ -191,7 +191,7 @@ std::vector<Light> exactStreams(const Drawn& drawn, const spp::StreamConstants& 
   std::vector<typename Formulas::StreamModes> orders(constants.orders.size());
   std::memcpy(orders.data(), numbers.data(), numbers.size() * sizeof(double));
   const spp::PowerWeights powers = spp::powerWeights(constants);
-  const auto view = spp::StreamSlab<double>(constants, 1.).view(drawn.mu, drawn.azimuth);
+  const auto view = spp::streamView<double>(constants, drawn.mu, drawn.azimuth);
   const auto weightsOf = [](const std::vector<double>& sum, const std::vector<double>& difference, std::size_t order) {
     typename Formulas::ModeWeights weights;
     std::copy_n(sum.begin() + static_cast<std::ptrdiff_t>(order * kN), kN, weights.sum);
@@ -305,7 +305,8 @@ Tally evaluated(std::uint64_t seed, std::uint64_t index) {
   const spp::StreamConstants constants = constantsOf(drawn);
   const spp::StreamArrays arrays(constants);
   arrays.powers(drawn.depth, drawn.thickness, down, up);
-  arrays.refinedRadiance(drawn.depth, drawn.thickness, arrays.view(drawn.mu, drawn.azimuth), radiance);
+  arrays.refinedRadiance(drawn.depth, drawn.thickness, spp::streamView<float>(constants, drawn.mu, drawn.azimuth),
+                         radiance);
   return judged(drawn, index, exactLight(drawn, constants), down, up, radiance);
 }
 

@@ -30,8 +30,7 @@ void sppRadiance(std::span<const float> depth, std::span<const float> thickness,
 }
 
 StreamArrays::StreamArrays(const StreamConstants& constants)
-    : any_slab_(constants, 1.f),
-      streams_(constants.streams()),
+    : streams_(constants.streams()),
       orders_(static_cast<int>(constants.orders.size())),
       depth_scale_(static_cast<float>(constants.depth_scale)),
       beam_rate_(static_cast<float>(constants.beam_rate)),
@@ -42,27 +41,25 @@ StreamArrays::StreamArrays(const StreamConstants& constants)
   power_difference_.assign(weights.power_difference.begin(), weights.power_difference.end());
 }
 
+detail::StreamNumbers StreamArrays::numbers() const {
+  return {.streams = streams_,
+          .orders = orders_,
+          .depth_scale = depth_scale_,
+          .beam_rate = beam_rate_,
+          .modes = modes_.data()};
+}
+
 void StreamArrays::powers(std::span<const float> depth, std::span<const float> thickness, std::span<float> down,
                           std::span<float> up) const {
   assert(down.size() == depth.size() && up.size() == depth.size());
-  detail::arrayKernel().streamPowers(places(depth, thickness),
-                                     {.streams = streams_,
-                                      .orders = orders_,
-                                      .depth_scale = depth_scale_,
-                                      .beam_rate = beam_rate_,
-                                      .modes = modes_.data()},
-                                     {power_sum_.data(), power_difference_.data()}, down.data(), up.data());
+  detail::arrayKernel().streamPowers(places(depth, thickness), numbers(), {power_sum_.data(), power_difference_.data()},
+                                     down.data(), up.data());
 }
 
-void StreamArrays::refinedRadiance(std::span<const float> depth, std::span<const float> thickness, const View& view,
-                                   std::span<float> radiance) const {
+void StreamArrays::refinedRadiance(std::span<const float> depth, std::span<const float> thickness,
+                                   const StreamView<float>& view, std::span<float> radiance) const {
   assert(radiance.size() == depth.size());
-  detail::arrayKernel().refinedRadiance(places(depth, thickness),
-                                        {.streams = streams_,
-                                         .orders = orders_,
-                                         .depth_scale = depth_scale_,
-                                         .beam_rate = beam_rate_,
-                                         .modes = modes_.data()},
+  detail::arrayKernel().refinedRadiance(places(depth, thickness), numbers(),
                                         {.downward = view.cosine > 0.f,
                                          .rate = view.rate,
                                          .beam_source = view.beam_source,

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "spp/stream_constants.hpp"
-#include "spp/stream_slab.hpp"
+#include "spp/stream_view.hpp"
 
 // The closed forms at many places at once, in single precision, as many places in a step as a vector of the machine
 // holds. Each place has a depth and a slab's thickness of its own, both true optical depths [1]: thickness >= 0, may be
@@ -14,6 +14,10 @@
 // for light of power 1, relative for radiance above 1 (bench/stress_spp.cpp; radiance of 3 streams and more for
 // g < -0.99: 1e-5). Each place's result is the same whatever places are beside it.
 namespace sunfleck::spp {
+
+namespace detail {
+struct StreamNumbers;
+}
 
 // (S2) P+ and P- [F] of SPP. mu0 (0, 1], albedo and forward_share 0 .. 1, as in spp_formulas.glsl.
 void sppPowers(std::span<const float> depth, std::span<const float> thickness, float mu0, float albedo,
@@ -35,16 +39,13 @@ class StreamArrays {
   void powers(std::span<const float> depth, std::span<const float> thickness, std::span<float> down,
               std::span<float> up) const;
 
-  // A direction, as StreamSlab::view has it.
-  using View = StreamSlab<float>::View;
-  View view(double mu, double azimuth) const { return any_slab_.view(mu, azimuth); }
-
-  // (S10) Diffuse radiance along one direction [1/sr]: as StreamSlab::refinedRadiance.
-  void refinedRadiance(std::span<const float> depth, std::span<const float> thickness, const View& view,
+  // (S10) Diffuse radiance along one direction, a view of the same constants [1/sr]: as StreamSlab::refinedRadiance.
+  void refinedRadiance(std::span<const float> depth, std::span<const float> thickness, const StreamView<float>& view,
                        std::span<float> radiance) const;
 
  private:
-  StreamSlab<float> any_slab_;  // for the view, which is the same for a slab of any thickness
+  detail::StreamNumbers numbers() const;
+
   int streams_, orders_;
   float depth_scale_, beam_rate_;
   std::vector<float> modes_;  // as modeNumbers() lays them out

@@ -118,32 +118,6 @@ SlabLight<Real> StreamSlab<Real>::light(Real depth) const {
 }
 
 template <typename Real>
-typename StreamSlab<Real>::View StreamSlab<Real>::view(double mu, double azimuth) const {
-  const BeamInMedium& beam = constants_.beam;
-  const double cosine = std::clamp(std::abs(mu), kLeastCosine, 1.);
-  const ViewKernel kernel = constants_.viewKernel(cosine);
-  const double per_extinction = kernel.extinction > 0. ? 1. / kernel.extinction : 0.;
-  const double source = per_extinction * scatteredInto(beam.medium, mu, beam.mu0, azimuth);
-  View result{.cosine = static_cast<Real>(mu),
-              .rate = static_cast<Real>(kernel.extinction / (constants_.depth_scale * cosine)),
-              .beam_source = static_cast<Real>(source)};
-  for (std::size_t m = 0; m < constants_.orders.size(); ++m) {
-    const StreamModes& modes = constants_.orders[m];
-    const double wave = std::cos(static_cast<double>(m) * azimuth), side = mu > 0. ? wave : -wave;
-    for (std::size_t j = 0, n = modes.rate.size(); j < n; ++j) {
-      double sum = 0., difference = 0.;
-      for (std::size_t i = 0; i < n; ++i) {
-        sum += kernel.sum[m][i] * modes.sum[i * n + j];
-        difference += kernel.difference[m][i] * modes.difference[i * n + j];
-      }
-      result.seen_sum.push_back(static_cast<Real>(wave * sum));
-      result.seen_difference.push_back(static_cast<Real>(side * difference));
-    }
-  }
-  return result;
-}
-
-template <typename Real>
 Real StreamSlab<Real>::refinedRadiance(Real depth, const View& view) const {
   const auto at = place(depth);
   const bool downward = view.cosine > Real(0);

@@ -4,6 +4,7 @@
 
 #include "spp/slab.hpp"
 #include "spp/stream_constants.hpp"
+#include "spp/stream_view.hpp"
 
 namespace sunfleck::spp {
 
@@ -33,14 +34,9 @@ class StreamSlab {
 
   SlabLight<Real> light(Real depth) const;
 
-  // Direction in which light travels: mu > 0 down, azimuth from that of the beam [rad]. Made once for many depths.
-  struct View {
-    Real cosine = 1;
-    Real rate = 1;                                // G(mu) / (depth scale |mu|)
-    Real beam_source = 0;                         // omega p(s, s0), of leaves Gamma(s, s0) / G(mu) [1/sr]
-    std::vector<Real> seen_sum, seen_difference;  // alpha, beta of every mode of every order, cos(m phi) included
-  };
-  View view(double mu, double azimuth) const;  // mu [-1, 1], not 0
+  // streamView() of the slab's medium and beam: made once for many depths.
+  using View = StreamView<Real>;
+  View view(double mu, double azimuth) const { return streamView<Real>(constants_, mu, azimuth); }
 
   // (S10) Diffuse radiance [1/sr]: light scattered once exactly, the rest from the model's field by the true phase
   // function, integrated along the line of sight in the true medium.

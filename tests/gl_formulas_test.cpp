@@ -17,7 +17,7 @@
 #include "render/gl/shader_text.hpp"
 #include "spp/mode_numbers.hpp"
 #include "spp/slab.hpp"
-#include "spp/stream_slab.hpp"
+#include "spp/stream_view.hpp"
 
 // The formulas that C++ and GLSL share, against each other.
 namespace {
@@ -154,8 +154,7 @@ struct StreamCase {
     const std::vector<float> numbers = spp::modeNumbers<float>(constants);
     std::memcpy(&modes, numbers.data(), sizeof modes);
     const spp::PowerWeights weights = spp::powerWeights(constants);
-    const spp::StreamSlab<float> slab(constants, 1.f);
-    const auto down = slab.view(mu, 0.), up = slab.view(-mu, 0.);
+    const auto down = spp::streamView<float>(constants, mu, 0.), up = spp::streamView<float>(constants, -mu, 0.);
     view_rate = down.rate;
     beam_source = down.beam_source;
     std::ranges::copy(weights.power_sum, powers.sum);

@@ -9,6 +9,7 @@
 
 #include "core/random.hpp"
 #include "core/require.hpp"
+#include "spp/stream_slab.hpp"
 
 #define SUNFLECK_ISA lanes_test
 #define SUNFLECK_VECTOR_BYTES 16
@@ -96,7 +97,8 @@ TEST(S9_StreamArrays, AreTheSlabsOfEachPlace) {
         std::vector<float> down(count + 1, -7.f), up(count + 1, -7.f), radiance(count + 1, -7.f);
         arrays.powers(places.depth, places.thickness, std::span(down).first(count), std::span(up).first(count));
         for (double mu : {-1., -0.3, 0.05, 0.8}) {
-          arrays.refinedRadiance(places.depth, places.thickness, arrays.view(mu, 1.), std::span(radiance).first(count));
+          const auto view = streamView<float>(constants, mu, 1.);
+          arrays.refinedRadiance(places.depth, places.thickness, view, std::span(radiance).first(count));
           for (std::size_t i = 0; i < count; ++i) {
             if (places.thickness[i] == 0.f) continue;  // no slab: StreamSlab refuses it
             const StreamSlab<double> slab(constants, double{places.thickness[i]});
@@ -117,9 +119,10 @@ TEST(S9_StreamArrays, AreTheSlabsOfEachPlace) {
 TEST(S9_StreamArrays, KnowTheSlabOfNoThickness) {
   const std::vector<float> zero(5, 0.f);
   std::vector<float> down(5), up(5), radiance(5);
-  const StreamArrays arrays(nStreamConstants({0.3, 1., 0.5}, 2, 1));
+  const StreamConstants constants = nStreamConstants({0.3, 1., 0.5}, 2, 1);
+  const StreamArrays arrays(constants);
   arrays.powers(zero, zero, down, up);
-  arrays.refinedRadiance(zero, zero, arrays.view(-0.5, 0.), radiance);
+  arrays.refinedRadiance(zero, zero, streamView<float>(constants, -0.5, 0.), radiance);
   for (std::size_t i = 0; i < zero.size(); ++i) {
     EXPECT_NEAR(down[i], 1.f, 1e-6f);  // a few roundings
     EXPECT_NEAR(up[i], 0.f, 1e-6f);

@@ -99,8 +99,8 @@ class TierContestant : public SlabContestant {
     float forward_share;
     spp::StreamConstants constants;
     spp::StreamArrays arrays;
-    std::vector<spp::StreamArrays::View> views;  // of the course's directions
-    std::vector<std::size_t> course_places;      // the first places are these of the course; they recur after
+    std::vector<spp::StreamView<float>> views;  // of the course's directions
+    std::vector<std::size_t> course_places;     // the first places are these of the course; they recur after
     std::vector<float> depth, thickness;
   };
 
@@ -114,7 +114,8 @@ class TierContestant : public SlabContestant {
                        .constants = constants,
                        .arrays = spp::StreamArrays(constants)});
     for (const double mu : course_.sphere.mus)
-      for (const double phi : course_.sphere.phis) blocks_.back().views.push_back(blocks_.back().arrays.view(mu, phi));
+      for (const double phi : course_.sphere.phis)
+        blocks_.back().views.push_back(spp::streamView<float>(constants, mu, phi));
     return blocks_.back();
   }
   static spp::StreamConstants constantsOf(const spp::SlabTier& tier, const spp::BeamInMedium& beam) {
