@@ -7,22 +7,26 @@
 
 #include "core/instruction_set.hpp"
 #include "core/random.hpp"
+#include "spp/compensation.hpp"
 #include "spp/slab.hpp"
 #include "spp/slab_arrays.hpp"
 #include "spp/stream_slab.hpp"
 
 namespace sunfleck::spp {
-#ifdef SUNFLECK_X86
-namespace avx512 {
-extern void (*const sumExponentials)(std::size_t count, const float* x, int exponentials, float* out);
+
+using SumExponentials = void (*)(std::size_t count, const float* x, int exponentials, float* out);
+namespace baseline {
+extern const SumExponentials sumExponentials;
 }
+#ifdef SUNFLECK_X86
 namespace avx2 {
-extern void (*const sumExponentials)(std::size_t count, const float* x, int exponentials, float* out);
+extern const SumExponentials sumExponentials;
+}
+namespace avx512 {
+extern const SumExponentials sumExponentials;
 }
 #endif
-namespace baseline {
-extern void (*const sumExponentials)(std::size_t count, const float* x, int exponentials, float* out);
-}
+
 }  // namespace sunfleck::spp
 
 // The closed forms on one core. Each checks its answer against double precision before it is timed.
@@ -172,20 +176,20 @@ BENCHMARK(sppg);
 // G of one place from 22 directions; unit: places/s.
 void compensation(benchmark::State& state) {
   const Leaves leaves;
+  constexpr int kDirections = 22;
+  std::vector<float> cosines, none_near, edges(kDirections, 0.f);
+  for (int j = 0; j < kDirections; ++j) {
+    cosines.push_back(1.f - (2.f * static_cast<float>(j) + 1.f) / kDirections);
+    none_near.push_back(1e6f);
+  }
   // Without an edge in any direction nothing is lost, and at the edge everything is.
-  if (spp::shareBeyondEdge(0.5f, 1e6f, 1.f, 3.f, 1.f) != 0.f ||
-      std::abs(spp::shareBeyondEdge(0.5f, 0.f, 1.f, 3.f, 1.f) - 1.f) > 1e-6f)
+  if (std::abs(spp::compensation(cosines, none_near, 1.f, 3.f, 1.f) - 1.f) > 1e-6f ||
+      spp::compensation(cosines, edges, 1.f, 3.f, 1.f) > 1e-6f)
     return state.SkipWithError("wrong answer");
-  constexpr int directions = 22;
   for (auto _ : state)
     for (std::size_t i = 0; i < Leaves::kCount; ++i) {
-      float lost = 0.f;
-      for (int j = 0; j < directions; ++j) {
-        const float cosine = 1.f - (2.f * static_cast<float>(j) + 1.f) / directions;
-        lost += spp::shareBeyondEdge(cosine, leaves.compensation[i] * leaves.depth[i], leaves.depth[i],
-                                     leaves.thickness[i], kMu0);
-      }
-      benchmark::DoNotOptimize(1.f - lost / directions);
+      std::ranges::fill(edges, leaves.compensation[i] * leaves.depth[i]);
+      benchmark::DoNotOptimize(spp::compensation(cosines, edges, leaves.depth[i], leaves.thickness[i], kMu0));
     }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(Leaves::kCount));
 }
@@ -203,10 +207,11 @@ BENCHMARK(copy);
 
 // And the exponentials that it takes: 1 for direct light, 3 for SPP, 2 n + 2 for n streams, 2 n + 3 for their radiance.
 void exponentials(benchmark::State& state) {
-  auto sum = spp::baseline::sumExponentials;
 #ifdef SUNFLECK_X86
-  if (instructionSet() == InstructionSet::avx512) sum = spp::avx512::sumExponentials;
-  if (instructionSet() == InstructionSet::avx2) sum = spp::avx2::sumExponentials;
+  const auto sum =
+      bestOf({&spp::baseline::sumExponentials, &spp::avx2::sumExponentials, &spp::avx512::sumExponentials});
+#else
+  const auto sum = spp::baseline::sumExponentials;
 #endif
   Leaves leaves;
   const int count = static_cast<int>(state.range(0));
