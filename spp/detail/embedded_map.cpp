@@ -1,6 +1,7 @@
 #include "spp/detail/embedded_map.hpp"
 
-// The assembler takes the files in as they are.
+// The assembler takes the files in as they are, by directives and names that assemblers of ELF files know: those of
+// other systems have sections and names of their own.
 asm(R"(
 .section .rodata
 sunfleck_particle_errors:
