@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "bench/stress_places.hpp"
 #include "core/random.hpp"
 #include "render/gl/buffer.hpp"
 #include "render/gl/context.hpp"
@@ -133,142 +133,133 @@ TEST(SharedFormulas, AgreeBetweenGpuAndCpu) {
 }
 
 // A shader's buffers for n streams, in the order in which they lie in memory (std430).
-struct StreamPlace {
+struct Place {
   float depth, thickness;
 };
-struct StreamLight {
-  float down, up, radiance_down, radiance_up;
+struct Light {
+  float down, up, radiance;
 };
 
-template <int kStreams>
-struct StreamCase {
-  using Formulas = spp::StreamFormulas<float, kStreams>;
-  float depth_scale, beam_rate, view_rate, beam_source;
-  typename Formulas::StreamModes modes;
-  typename Formulas::ModeWeights powers, seen_down, seen_up;
-
-  StreamCase(const spp::BeamInMedium& medium, double mu) {
-    const spp::StreamConstants constants = spp::nStreamConstants(medium, kStreams, 1);
-    depth_scale = static_cast<float>(constants.depth_scale);
-    beam_rate = static_cast<float>(constants.beam_rate);
-    const std::vector<float> numbers = spp::modeNumbers<float>(constants);
-    std::memcpy(&modes, numbers.data(), sizeof modes);
-    const spp::PowerWeights weights = spp::powerWeights(constants);
-    const auto down = spp::streamView<float>(constants, mu, 0.), up = spp::streamView<float>(constants, -mu, 0.);
-    view_rate = down.rate;
-    beam_source = down.beam_source;
-    std::ranges::copy(weights.power_sum, powers.sum);
-    std::ranges::copy(weights.power_difference, powers.difference);
-    std::ranges::copy(down.seen_sum, seen_down.sum);
-    std::ranges::copy(down.seen_difference, seen_down.difference);
-    std::ranges::copy(up.seen_sum, seen_up.sum);
-    std::ranges::copy(up.seen_difference, seen_up.difference);
-  }
-
-  StreamLight at(const StreamPlace& x) const {
-    const auto place = Formulas::slabPlace(x.depth, x.thickness, depth_scale, beam_rate);
-    const auto light = Formulas::streamPowers(modes, powers, place);
-    const float fade_down = std::exp(-view_rate * place.depth), fade_up = std::exp(-view_rate * place.rest);
-    const float beam_down = Formulas::beamAlongDownward(place, view_rate, fade_down);
-    const float beam_up = Formulas::beamAlongUpward(place, view_rate, fade_up);
-    return {
-        light.down, light.up,
-        beam_source * beam_down +
-            Formulas::streamRadiance(modes, seen_down, place, true, view_rate, fade_down, beam_down),
-        beam_source * beam_up + Formulas::streamRadiance(modes, seen_up, place, false, view_rate, fade_up, beam_up)};
-  }
-};
-
-constexpr const char* kStreamShader = R"(
-    layout(local_size_x = 64) in;
-    struct Place { float depth, thickness; };
-    struct Light { float down, up, radiance_down, radiance_up; };
-    layout(std430, binding = 0) readonly buffer Places { Place places[]; };
-    layout(std430, binding = 1) writeonly buffer Lights { Light lights[]; };
-    layout(std430, binding = 2) readonly buffer Case {
-      float depth_scale, beam_rate, view_rate, beam_source;
-      StreamModes modes;
-      ModeWeights powers, seen_down, seen_up;
-    };
-    void main() {
-      uint i = gl_GlobalInvocationID.x;
-      if (i >= places.length()) return;
-      SlabPlace place = slabPlace(places[i].depth, places[i].thickness, depth_scale, beam_rate);
-      SlabPowers light = streamPowers(modes, powers, place);
-      float fade_down = exp(-view_rate * place.depth);
-      float fade_up = exp(-view_rate * place.rest);
-      float beam_down = beamAlongDownward(place, view_rate, fade_down);
-      float beam_up = beamAlongUpward(place, view_rate, fade_up);
-      lights[i].down = light.down;
-      lights[i].up = light.up;
-      lights[i].radiance_down =
-          beam_source * beam_down + streamRadiance(modes, seen_down, place, true, view_rate, fade_down, beam_down);
-      lights[i].radiance_up =
-          beam_source * beam_up + streamRadiance(modes, seen_up, place, false, view_rate, fade_up, beam_up);
+// Powers and radiance of SPP, unrefined.
+constexpr const char* kSppShader = R"(
+    layout(std430, binding = 2) readonly buffer Case { float mu0, albedo, forward_share, downward; };
+    Light lightAt(Place x) {
+      SlabPowers powers = sppPowers(x.depth, x.thickness, mu0, albedo, forward_share);
+      SlabPowers radiance = sppDiffuseRadiance(powers, directPower(clamp(x.depth, 0., x.thickness), mu0));
+      return Light(powers.down, powers.up, downward > 0. ? radiance.down : radiance.up);
     })";
 
-std::vector<StreamPlace> streamPlaces() {
-  std::vector<StreamPlace> places;
-  Random random(2, 0);
-  for (int i = 0; i < 4096; ++i) {
-    const float thickness = i % 2 == 0 ? 20.f * random.uniform() : std::exp(30.f * random.uniform() - 15.f);
-    places.push_back({thickness * random.uniform(), thickness});
-  }
-  for (const float thickness : {0.f, 1e-30f, 1e-8f, 1.f, 1e6f, 1e30f, std::numeric_limits<float>::infinity()})
-    for (const float part : {0.f, 0.5f, 1.f})
-      places.push_back({part == 0.f ? 0.f : part * std::min(thickness, 1e30f), thickness});
-  return places;
+// Powers and refined radiance of n streams.
+constexpr const char* kStreamShader = R"(
+    layout(std430, binding = 2) readonly buffer Case { float depth_scale, beam_rate, view_rate, beam_source, downward; };
+    layout(std430, binding = 3) readonly buffer Orders { StreamModes orders[]; };
+    layout(std430, binding = 4) readonly buffer Weights { ModeWeights powers, seen[]; };
+    Light lightAt(Place x) {
+      SlabPlace at = slabPlace(x.depth, x.thickness, depth_scale, beam_rate);
+      SlabPowers light = streamPowers(orders[0], powers, at);
+      bool down = downward > 0.;
+      float fade = exp(-view_rate * (down ? at.depth : at.rest));
+      float beam = down ? beamAlongDownward(at, view_rate, fade) : beamAlongUpward(at, view_rate, fade);
+      float radiance = beam_source * beam;
+      for (int m = 0; m < orders.length(); ++m)
+        radiance += streamRadiance(orders[m], seen[m], at, down, view_rate, fade, beam);
+      return Light(light.down, light.up, max(radiance, 0.));
+    })";
+
+constexpr const char* kPlacesShader = R"(
+    layout(local_size_x = 64) in;
+    layout(std430, binding = 0) readonly buffer Places { Place places[]; };
+    layout(std430, binding = 1) writeonly buffer Lights { Light lights[]; };
+    void main() {
+      uint i = gl_GlobalInvocationID.x;
+      if (i < places.length()) lights[i] = lightAt(places[i]);
+    })";
+
+gl::Program placesProgram(stress::Form form) {
+  const int streams = stress::StressPlaces{.form = form}.streams();
+  return gl::Program{{.stage = gl::Stage::compute,
+                      .name = stress::kFormNames[form],
+                      .text = "#version 450 core\n#define STREAMS " + std::to_string(streams) + "\n" +
+                              gl::shaderText("render/gl/prelude.glsl") + gl::shaderText("spp/spp_formulas.glsl") +
+                              gl::shaderText("spp/stream_formulas.glsl") +
+                              "struct Place { float depth, thickness; };\nstruct Light { float down, up, radiance; };" +
+                              (form == stress::kSpp ? kSppShader : kStreamShader) + kPlacesShader}};
 }
 
-// The largest difference between GLSL and C++ over media and places.
-template <int kStreams>
-float largestDifference(const gl::Context& context) {
-  const std::string text = "#version 450 core\n#define STREAMS " + std::to_string(kStreams) + "\n" +
-                           gl::shaderText("render/gl/prelude.glsl") + gl::shaderText("spp/spp_formulas.glsl") +
-                           gl::shaderText("spp/stream_formulas.glsl") + kStreamShader;
-  const gl::Program program{{.stage = gl::Stage::compute, .name = "stream formulas", .text = text}};
-  const std::vector<StreamPlace> places = streamPlaces();
-  const gl::Buffer in(places);
-  float worst = 0.f;
-  for (const spp::BeamInMedium& medium : std::initializer_list<spp::BeamInMedium>{
-           {0., 0.95, 1.}, {0.6, 0.5, 0.3}, {0., 1., 0.5}, {-0.5, 1. - 1e-7, 0.05}, {0.85, 0.99, 1.}, {0.3, 0., 1e-7}})
-    for (const double mu : {medium.mu0, 0.35}) {  // in the beam's own direction rates are equal
-      const StreamCase<kStreams> setup(medium, mu);
-      const gl::Buffer out(std::vector<StreamLight>(places.size()));
-      const gl::Buffer numbers(std::span<const StreamCase<kStreams>>(&setup, 1));
-      in.bindStorage(0);
-      out.bindStorage(1);
-      numbers.bindStorage(2);
-      program.use();
-      glDispatchCompute(static_cast<GLuint>(places.size() / 64 + 1), 1, 1);
-      glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-      const std::vector<StreamLight> lights = out.read<StreamLight>();
-      context.requireNoError("evaluating the stream formulas");
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        const StreamLight& found = lights[i];
-        const StreamLight expected = setup.at(places[i]);
-        for (const auto member :
-             {&StreamLight::down, &StreamLight::up, &StreamLight::radiance_down, &StreamLight::radiance_up}) {
-          const float difference =
-              std::abs(found.*member - expected.*member) / std::max(1.f, std::abs(expected.*member));
-          EXPECT_TRUE(difference <= 1e9f) << "not a number: n " << kStreams << " depth " << places[i].depth;
-          worst = std::max(worst, difference);
-        }
+// The numbers of SPP, or of a form with streams, in the shader's buffers from binding 2 on.
+std::vector<std::vector<float>> numbersOf(const stress::StressPlaces& drawn) {
+  const float downward = drawn.mu > 0. ? 1.f : -1.f;
+  if (drawn.form == stress::kSpp)
+    return {{static_cast<float>(drawn.mu0), static_cast<float>(drawn.albedo), drawn.forwardShare(), downward}};
+  const spp::StreamConstants constants = drawn.constants();
+  const auto view = spp::streamView<float>(constants, drawn.mu, drawn.azimuth);
+  const spp::PowerWeights powers = spp::powerWeights(constants);
+  std::vector<float> weights(powers.power_sum.begin(), powers.power_sum.end());
+  weights.insert(weights.end(), powers.power_difference.begin(), powers.power_difference.end());
+  const auto n = static_cast<std::ptrdiff_t>(constants.streams());
+  for (std::ptrdiff_t first = 0; first < std::ssize(view.seen_sum); first += n)
+    for (const auto* seen : {&view.seen_sum, &view.seen_difference})
+      weights.insert(weights.end(), seen->begin() + first, seen->begin() + first + n);
+  return {{static_cast<float>(constants.depth_scale), static_cast<float>(constants.beam_rate), view.rate,
+           view.beam_source, downward},
+          spp::modeNumbers<float>(constants),
+          weights};
+}
+
+std::vector<Light> lightOnGpu(const gl::Program& program, const stress::StressPlaces& drawn) {
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < drawn.depth.size(); ++i) places.push_back({drawn.depth[i], drawn.thickness[i]});
+  const gl::Buffer in(places), out(std::vector<Light>(places.size()));
+  in.bindStorage(0);
+  out.bindStorage(1);
+  std::vector<gl::Buffer> numbers;
+  for (const std::vector<float>& values : numbersOf(drawn)) numbers.emplace_back(values);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i].bindStorage(static_cast<unsigned>(2 + i));
+  program.use();
+  glDispatchCompute(static_cast<GLuint>(places.size() / 64 + 1), 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  return out.read<Light>();
+}
+
+// What a closed form on the GPU may be off, for light of power 1 or relative to radiance above 1. The exponential of
+// llvmpipe is off by 4 roundings near 1 and by more where it is small, that of C++ by one. Scatterers that throw nearly
+// all light back have modes that magnify this. Of 40 million places 6.7e-6 was the farthest with g < -0.99, and 2.3e-6
+// elsewhere.
+double gpuTolerance(const stress::StressPlaces& drawn) {
+  return drawn.asymmetry < -0.99 ? 1e-5 : 3e-6;
+}
+
+// (S2, S3, S9, S10) Check a closed form on the GPU against double precision, at places of bench/stress_spp in the
+// corners of what is allowed, with up to three azimuth orders.
+class ClosedForm : public testing::TestWithParam<stress::Form> {};
+TEST_P(ClosedForm, OnTheGpuIsNearDoublePrecisionInTheCorners) {
+  constexpr std::uint64_t kMedia = 40, kSeed = 3;
+  const gl::Context context;
+  const gl::Program program = placesProgram(GetParam());
+  double worst = 0.;
+  for (std::uint64_t medium = 0; medium < kMedia; ++medium) {
+    const auto index = medium * stress::kForms + static_cast<std::uint64_t>(GetParam());
+    const stress::StressPlaces drawn = stress::drawPlaces(kSeed, index, 1024);
+    const double tolerance = gpuTolerance(drawn);
+    const std::vector<Light> found = lightOnGpu(program, drawn);
+    const std::vector<stress::StressLight> exact = exactLight(drawn);
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      const stress::StressLight light{double{found[i].down}, double{found[i].up}, double{found[i].radiance}};
+      const stress::StressLight error = lightError(light, exact[i]);
+      for (const double off : {error.down, error.up, error.radiance}) {
+        EXPECT_LE(off, tolerance) << describe(drawn, i);
+        worst = std::max(worst, off);
       }
     }
-  return worst;
-}
-
-// (S9, S10) Check powers and refined radiance of n streams on the GPU against C++, at 4,096 random places and corners,
-// in 6 media along 4 directions: 200,000 numbers for each n. Absolute for light of power 1, relative for radiance
-// above 1. 7.7e-7 was met with llvmpipe, whose exponential differs from libm's by an ulp or two; the bound is as above.
-TEST(StreamFormulas, AgreeBetweenGpuAndCpu) {
-  const gl::Context context;
-  const std::array worst{largestDifference<1>(context), largestDifference<2>(context), largestDifference<4>(context)};
-  for (const float difference : worst) EXPECT_LT(difference, 2e-6f);
+  }
+  context.requireNoError("evaluating a closed form");
   std::ostringstream largest;
-  largest << worst[0] << " " << worst[1] << " " << worst[2];
+  largest << worst;
   RecordProperty("worst", largest.str());
 }
+INSTANTIATE_TEST_SUITE_P(All, ClosedForm,
+                         testing::Values(stress::kSpp, stress::kSppModes, stress::kTwoStream, stress::kNStream1,
+                                         stress::kNStream2, stress::kNStream3, stress::kNStream4, stress::kNStream8),
+                         [](const auto& form) { return std::string(stress::kFormNames[form.param]); });
 
 }  // namespace
