@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,8 +23,9 @@ struct Crossing {
 // direct light comes. Immutable after it is made.
 class DeepOpacityMap {
  public:
-  // `resolution` >= 1: pixels along the longer side. Pixels are square and cover the leaves and the wood.
-  DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution);
+  // `resolution` >= 1: pixels along the longer side. Pixels are square and cover the leaves and the wood. Without
+  // `with_wood` the wood is not looked for, which saves half of the work. Works in parallel.
+  DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, bool with_wood = true);
 
   Direction along() const { return axes_.along; }
   const Axes& axes() const { return axes_; }
@@ -34,9 +36,9 @@ class DeepOpacityMap {
   // All crossings, pixel by pixel, sorted by depth: those of pixel (x, y) are [first[i], first[i + 1]), i = y * width +
   // x.
   std::span<const std::uint32_t> first() const { return first_; }
-  std::span<const Crossing> crossings() const { return crossings_; }
+  std::span<const Crossing> crossings() const { return {crossings_.get(), first_.back()}; }
   std::span<const Crossing> crossings(int x, int y) const;
-  // Depth of the first wood in each pixel [m]; infinity where there is none.
+  // Depth of the first wood in each pixel [m]; infinity where there is none; empty in a map made without wood.
   std::span<const float> woodDepth() const { return wood_depth_; }
 
   // (right, up, depth) of a point in the map [m].
@@ -54,16 +56,20 @@ class DeepOpacityMap {
   Counts counts(glm::vec3 point, std::uint32_t own = kNoLeaf) const;
 
  private:
+  std::size_t pixelNumber(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.x) + static_cast<std::size_t>(x);
+  }
+
   Axes axes_;
   glm::vec2 corner_{0.f};
   float pixel_size_ = 0.f;
   glm::ivec2 size_{0};
   std::vector<std::uint32_t> first_;
-  std::vector<Crossing> crossings_;
+  std::unique_ptr<Crossing[]> crossings_;
   std::vector<float> wood_depth_;
 };
 
-// The maps of one tree along each direction, in parallel.
+// The maps of one tree along each direction, without wood, in parallel.
 std::vector<DeepOpacityMap> deepOpacityMaps(const TreeMesh& mesh, std::span<const Direction> directions,
                                             int resolution);
 

@@ -289,7 +289,7 @@ const Bounds& RayScene::box() const {
   return geometry_->stand_box;
 }
 
-int RayScene::crossings(glm::vec3 from, glm::vec3 direction) const {
+int RayScene::crossings(glm::vec3 from, glm::vec3 direction, std::uint32_t own) const {
   if (geometry_->period) throw InvalidInput("leaf crossings on a line: the stand must not be periodic");
   std::vector<LeafCrossing> crossings;
   Counting counting{.context = {}, .scene = geometry_.get(), .crossings = &crossings};
@@ -297,6 +297,7 @@ int RayScene::crossings(glm::vec3 from, glm::vec3 direction) const {
   const glm::vec3 unit = glm::normalize(direction);
   RTCRayHit ray = rayFrom(from - geometry_->origin, unit, kInfinity);
   filterHits(geometry_->countingScene(), ray, counting.context, noteAndReject);
+  std::erase_if(crossings, [&](const LeafCrossing& crossing) { return crossing.leaf == own; });
 
   // Watertight tracing finds a line that meets a shared edge at least once, perhaps in both triangles: at the same
   // distance but for rounding, which the lift bounds.

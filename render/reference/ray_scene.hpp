@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
 
@@ -26,8 +27,10 @@ class RayScene {
 
   // (R5) Exact number of leaf crossings on the line from `from` along `direction` without end: the check of the deep
   // opacity maps. A leaf that the line meets on an edge shared by two of its triangles is crossed once. Wood is passed
-  // through. Throws InvalidInput for a periodic stand, where the number may be infinite.
-  int crossings(glm::vec3 from, glm::vec3 direction) const;
+  // through; leaf `own`, in any tree, is not counted. Throws InvalidInput for a periodic stand, where the number may
+  // be infinite.
+  static constexpr std::uint32_t kNoLeaf = ~0u;
+  int crossings(glm::vec3 from, glm::vec3 direction, std::uint32_t own = kNoLeaf) const;
 
   struct Geometry;  // Embree's scenes; complete in render/reference/ alone
   const Geometry& geometry() const { return *geometry_; }
