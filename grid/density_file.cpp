@@ -26,6 +26,8 @@ namespace sunfleck {
 namespace fs = std::filesystem;
 namespace {
 
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 33;  // [byte]
 
 std::string contents(const fs::path& file) {
@@ -47,6 +49,23 @@ std::string contents(const fs::path& file) {
   return bytes;
 }
 
+constexpr float kAny = std::numeric_limits<float>::max();
+
+std::string ofCell(const std::string& what, const openvdb::Coord& cell) {
+  std::ostringstream where;
+  where << what << " of cell " << cell;
+  return where.str();
+}
+
+// Finite values from `least` to `most`, and 0 outside the cells.
+void validateValues(const openvdb::FloatTree& tree, const std::string& what, float least, float most,
+                    const char* rule) {
+  require(tree.background() == 0.f, what + " outside the cells", tree.background(), "0");
+  for (auto value = tree.cbeginValueAll(); value; ++value)
+    if (!(std::isfinite(*value) && *value >= least && *value <= most))
+      require(false, ofCell(what, value.getCoord()), *value, rule);
+}
+
 // A file that is read: what has been walked of it, and the stream from which OpenVDB may read that.
 class Grids {
  public:
@@ -66,9 +85,12 @@ class Grids {
   DensityTrees trees() {
     DensityTrees trees;
     trees.density = tree(density_);
-    for (std::size_t i = 0; i < normals_.size(); ++i)
-      if (normals_[i]) trees.normals[i] = tree(*normals_[i]);
-    if (wood_) trees.wood = tree(*wood_);
+    validateValues(*trees.density, "density [1/m]", 0.f, kAny, "finite and not negative");
+    if (normals_[0]) readMoments(trees);
+    if (wood_) {
+      trees.wood = tree(*wood_);
+      validateValues(*trees.wood, "wood [1/m]", 0.f, kAny, "finite and not negative");
+    }
     return trees;
   }
   double cellSize() const { return density_.scale.x; }
@@ -98,6 +120,39 @@ class Grids {
     same(wood_, kWoodName);
   }
 
+  void readMoments(DensityTrees& trees) {
+    auto tile = trees.density->cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+      if (*tile != 0.f)
+        throw InvalidInput("holds second moments of leaf normals, and a density whose " +
+                           ofCell("block", tile.getCoord()) + " has one value: must have a value for each cell");
+    std::vector<Leaf*> blocks;
+    trees.density->getNodes(blocks);
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+      Leaf& leaf = *blocks[block];
+      for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) leaf.setActiveState(i, leaf.getValue(i) != 0.f);
+      leaf.setTransientData(static_cast<openvdb::Index32>(block));
+      trees.moments.emplace_back(leaf.onVoxelCount());
+    }
+    for (std::size_t i = 0; i < normals_.size(); ++i) {
+      const FloatTreePtr one = tree(*normals_[i]);
+      validateValues(*one, kNormalNames[i], -1.f, 1.f, "from -1 to 1");
+      const openvdb::FloatGrid::ConstAccessor values(*one);
+      for (const Leaf* leaf : blocks) {
+        auto moment = trees.moments[leaf->transientData()].begin();
+        for (auto cell = leaf->cbeginValueOn(); cell; ++cell) *moment++.*kMoments[i] = values.getValue(cell.getCoord());
+      }
+    }
+    for (const Leaf* leaf : blocks) {
+      auto moment = trees.moments[leaf->transientData()].begin();
+      for (auto cell = leaf->cbeginValueOn(); cell; ++cell)
+        if (!(*moment++).possible())
+          throw InvalidInput(ofCell("the second moments of leaf normals", cell.getCoord()) +
+                             ": must be a mean of n n^T over unit vectors n");
+    }
+  }
+
   // Lets OpenVDB read the tree alone, at a place that has been walked: the rest of its reader trusts the file.
   FloatTreePtr tree(const VdbFloatGrid& grid) {
     in_.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
@@ -117,47 +172,13 @@ class Grids {
   std::istringstream in_{std::ios::in | std::ios::binary};
 };
 
-std::string ofCell(const std::string& what, const openvdb::Coord& cell) {
-  std::ostringstream where;
-  where << what << " of cell " << cell;
-  return where.str();
-}
-
-// Finite values from `least` to `most`, and 0 outside the cells.
-void validateValues(const openvdb::FloatTree& tree, const std::string& what, float least, float most,
-                    const char* rule) {
-  require(tree.background() == 0.f, what + " outside the cells", tree.background(), "0");
-  for (auto value = tree.cbeginValueAll(); value; ++value)
-    if (!(std::isfinite(*value) && *value >= least && *value <= most))
-      require(false, ofCell(what, value.getCoord()), *value, rule);
-}
-
-void validateValues(const DensityTrees& trees) {
-  constexpr float any = std::numeric_limits<float>::max();
-  validateValues(*trees.density, "density [1/m]", 0.f, any, "finite and not negative");
-  if (trees.wood) validateValues(*trees.wood, "wood [1/m]", 0.f, any, "finite and not negative");
-  if (!trees.normals[0]) return;
-  for (std::size_t i = 0; i < kNormalNames.size(); ++i)
-    validateValues(*trees.normals[i], kNormalNames[i], -1.f, 1.f, "from -1 to 1");
-  for (auto value = trees.density->cbeginValueAll(); value; ++value) {
-    if (*value == 0.f) continue;
-    const openvdb::Coord cell = value.getCoord();
-    const auto m = [&](std::size_t i) { return trees.normals[i]->getValue(cell); };
-    if (!LeafOrientation{m(0), m(1), m(2), m(3), m(4)}.possible())
-      throw InvalidInput(ofCell("the second moments of leaf normals", cell) +
-                         ": must be a mean of n n^T over unit vectors n");
-  }
-}
-
 }  // namespace
 
 DensityGrid DensityGrid::read(const fs::path& file) {
   initializeOpenVdb();
   try {
     Grids grids(contents(file));
-    DensityTrees trees = grids.trees();
-    validateValues(trees);
-    return DensityGrid(std::make_shared<const Cells>(std::move(trees), grids.cellSize(), grids.corner()));
+    return DensityGrid(std::make_shared<const Cells>(grids.trees(), grids.cellSize(), grids.corner()));
   } catch (const InvalidInput& wrong) {
     throw InvalidInput(file.string() + ": " + wrong.what());
   } catch (const std::bad_alloc&) {
