@@ -10,6 +10,7 @@
 #include "core/bounds.hpp"
 #include "core/directions.hpp"
 #include "core/progress.hpp"
+#include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
 #include "grid/leaf_orientation.hpp"
 
@@ -35,6 +36,14 @@ class DensityGrid {
   // origin, or need more than 2^30 shares, 8 GiB or the memory there is; std::runtime_error("interrupted") when
   // `progress` says to stop.
   static DensityGrid voxelize(const TreeMesh& mesh, float cell_size, const Progress& progress = {});
+
+  // The same of all trees of a stand: the prototype is voxelized once, and once more for each further rotation, and its
+  // cells are placed by displacement (D2). A tree that is moved by whole cells keeps its values; otherwise each cell
+  // is shared among those that it overlaps. With a period, one period, about the middle of the trees' places: what
+  // stands beyond its sides enters at the opposite ones. The area is that of all trees. Independent of the number of
+  // threads, and of the order of the trees but for rounding. Throws as voxelize does, of the stand.
+  static DensityGrid voxelizeStand(const TreeMesh& mesh, const Stand& stand, float cell_size,
+                                   const Progress& progress = {});
 
   // Reads the grid named "density" of a .vdb file and, where the file has them, the second moments "normal_xx" and so
   // on and "wood". Throws InvalidInput on a file that is missing, empty, cut short or corrupt, holds no density or one
@@ -74,5 +83,7 @@ class DensityGrid {
 
 // Tells meshes apart: a hash of their vertices and triangles as text, a UUID of version 5.
 std::string meshHash(const TreeMesh& mesh);
+// Tells stands apart: also by the places of the trees and the period.
+std::string standHash(const TreeMesh& mesh, const Stand& stand);
 
 }  // namespace sunfleck

@@ -66,6 +66,10 @@ openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridS
     text("unit_" + named.name, named.unit);
     text("length_unit", "m");
     text("source", source.name);
+    if (cells.period) {
+      number("period_x_m", cells.period->x);
+      number("period_y_m", cells.period->y);
+    }
     if (!source.hash.empty()) text("source_hash", source.hash);
     if (named.tree == cells.density) {
       number("leaf_area_m2", cells.leaf_area);

@@ -3,8 +3,10 @@
 #include <openvdb/openvdb.h>
 
 #include <array>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,9 +57,10 @@ struct DensityGrid::Cells : DensityTrees {
   std::size_t occupied = 0;  // cells whose density is not 0
   double leaf_area = 0.;     // [m^2]
   std::size_t wood_cells = 0;
-  double wood_area = 0.;   // projected, mean of all directions [m^2]
-  double crown_area = 0.;  // [m^2]; 0 when the density has tiles, as none of ours has
-  Bounds box;              // of the occupied cells [m]
+  double wood_area = 0.;               // projected, mean of all directions [m^2]
+  double crown_area = 0.;              // [m^2]; 0 when the density has tiles, as none of ours has
+  Bounds box;                          // of the occupied cells [m]
+  std::optional<glm::dvec2> period{};  // of a periodic stand along x and y [m]
 
   // Counts, sums and bounds the cells of the trees.
   Cells(DensityTrees trees, double side, const glm::dvec3& low);
