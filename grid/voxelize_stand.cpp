@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,6 +28,9 @@ using Cells = DensityGrid::Cells;
 
 constexpr double kMostCells = 0x1p20;  // of the stand along an axis
 constexpr double kMostCopies = 0x1p24;
+// Eight visits of a tree make a block of 2 KiB at least, unless trees stand in each other: so much is sure to be needed
+// where up to four do.
+constexpr double kBytesOfVisit = 4. * sizeof(Visit);
 
 TreeMesh turned(TreeMesh mesh, float angle) {
   const double c = std::cos(static_cast<double>(angle)), s = std::sin(static_cast<double>(angle));
@@ -96,7 +99,9 @@ class Placed {
       : prototypes_(prototypes), copies_(copies), kept_(kept) {
     for (const DensityTrees& prototype : prototypes) {
       blocks_.emplace_back();
+      boxes_.emplace_back();
       if (prototype.*kind) (prototype.*kind)->getNodes(blocks_.back());
+      for (const Leaf* leaf : blocks_.back()) leaf->evalActiveBoundingBox(boxes_.back().emplace_back());
     }
     std::size_t count = 0;
     for (const Copy& copy : copies) {
@@ -108,11 +113,15 @@ class Placed {
 
   std::vector<BlockOfCells> blocks(double cell_size, const glm::ivec3& first_block, bool moments,
                                    const Stage& stage) const {
-    requireMemory(static_cast<double>(first_.back()) * 8. * sizeof(Visit), cell_size);
-    const SortedVisits sorted = visits(first_block, stage);
-    double cells = 0.;
-    for (const Copy& copy : copies_)
-      for (const Leaf* leaf : blocks_[copy.prototype]) cells += 8. * static_cast<double>(leaf->onVoxelCount());
+    requireMemory(static_cast<double>(first_.back()) * kBytesOfVisit, cell_size);  // one at least, but beyond a period
+    const SortedVisits sorted = visits(cell_size, first_block, stage);
+    std::vector<double> cells_of;
+    for (const auto& of_prototype : blocks_)
+      cells_of.push_back(std::accumulate(
+          of_prototype.begin(), of_prototype.end(), 0.,
+          [](double sum, const Leaf* leaf) { return sum + static_cast<double>(leaf->onVoxelCount()); }));
+    double cells = 0.;  // at most
+    for (const Copy& copy : copies_) cells += 8. * cells_of[copy.prototype];
     const auto blocks = static_cast<double>(sorted.blocks());
     requireMemory(
         blocks * kBytesOfBlock + (moments ? std::min(cells, blocks * Leaf::SIZE) * sizeof(LeafOrientation) : 0.),
@@ -130,31 +139,42 @@ class Placed {
   // Of each cell in use: density, and density times each moment.
   using Sums = std::array<std::array<double, 6>, Leaf::SIZE>;
 
-  SortedVisits visits(const glm::ivec3& first_block, const Stage& stage) const {
-    tbb::enumerable_thread_specific<std::vector<Visit>> locals;
-    stage.inBatches(copies_.size(), 0., 0.3, [&](std::size_t i) {
+  // `act(key)` of each block in which a block of the copy has a part.
+  template <typename Act>
+  void overTargets(const Copy& copy, const openvdb::CoordBBox& cells, const glm::ivec3& first_block,
+                   const Act& act) const {
+    const glm::ivec3 beyond(glm::ceil(copy.fraction));
+    const glm::dvec3 low = glm::max(glm::dvec3(toIvec(cells.min()) + copy.whole), kept_.low);
+    const glm::dvec3 high = glm::min(glm::dvec3(toIvec(cells.max()) + copy.whole + beyond), glm::ceil(kept_.high) - 1.);
+    if (low.x > high.x || low.y > high.y) return;
+    const glm::ivec3 first = blockHolding(glm::ivec3(low)), last = blockHolding(glm::ivec3(high));
+    for (int x = first.x; x <= last.x; ++x)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int z = first.z; z <= last.z; ++z) act(blockKey(glm::ivec3(x, y, z) - first_block));
+  }
+
+  SortedVisits visits(double cell_size, const glm::ivec3& first_block, const Stage& stage) const {
+    const auto overCopy = [&](std::size_t i, const auto& act) {
       const Copy& copy = copies_[i];
-      std::vector<Visit>& local = locals.local();
-      const glm::ivec3 beyond(glm::ceil(copy.fraction));
-      for (std::size_t b = 0; b < blocks_[copy.prototype].size(); ++b) {
-        openvdb::CoordBBox box;
-        blocks_[copy.prototype][b]->evalActiveBoundingBox(box);
-        const glm::dvec3 low = glm::max(glm::dvec3(toIvec(box.min()) + copy.whole), kept_.low);
-        const glm::dvec3 high =
-            glm::min(glm::dvec3(toIvec(box.max()) + copy.whole + beyond), glm::ceil(kept_.high) - 1.);
-        if (low.x > high.x || low.y > high.y) continue;
-        const glm::ivec3 first = blockHolding(glm::ivec3(low)), last = blockHolding(glm::ivec3(high));
-        for (int x = first.x; x <= last.x; ++x)
-          for (int y = first.y; y <= last.y; ++y)
-            for (int z = first.z; z <= last.z; ++z)
-              local.push_back({blockKey(glm::ivec3(x, y, z) - first_block), static_cast<std::uint32_t>(first_[i] + b)});
-      }
+      const std::vector<openvdb::CoordBBox>& boxes = boxes_[copy.prototype];
+      for (std::size_t b = 0; b < boxes.size(); ++b)
+        overTargets(copy, boxes[b], first_block, [&](std::uint64_t key) {
+          act(Visit{key, static_cast<std::uint32_t>(first_[i] + b)});
+        });
+    };
+    std::vector<std::size_t> place(copies_.size() + 1);
+    stage.inBatches(copies_.size(), 0., 0.1, [&](std::size_t i) {
+      std::size_t count = 0;
+      overCopy(i, [&](const Visit&) { ++count; });
+      place[i + 1] = count;
     });
-    std::vector<Visit> all;
-    for (std::vector<Visit>& local : locals) {
-      all.insert(all.end(), local.begin(), local.end());
-      local = {};
-    }
+    std::partial_sum(place.begin(), place.end(), place.begin());
+    requireMemory(static_cast<double>(place.back()) * kBytesOfVisit, cell_size);
+    std::vector<Visit> all(place.back());
+    stage.inBatches(copies_.size(), 0.1, 0.2, [&](std::size_t i) {
+      Visit* next = all.data() + place[i];
+      overCopy(i, [&](const Visit& visit) { *next++ = visit; });
+    });
     return SortedVisits(std::move(all));
   }
 
@@ -208,8 +228,9 @@ class Placed {
   const std::vector<DensityTrees>& prototypes_;
   const std::vector<Copy>& copies_;
   Kept kept_;
-  std::vector<std::vector<const Leaf*>> blocks_;  // of each prototype
-  std::vector<std::size_t> first_;                // block of each copy among those of all, and the end
+  std::vector<std::vector<const Leaf*>> blocks_;        // of each prototype
+  std::vector<std::vector<openvdb::CoordBBox>> boxes_;  // of the active cells of each of them
+  std::vector<std::size_t> first_;                      // block of each copy among those of all, and the end
 };
 
 void validate(const Stand& stand) {
