@@ -1,6 +1,7 @@
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -18,6 +19,7 @@
 
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
+#include "grid/detail/available_memory.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/detail/vdb_layout.hpp"
 #include "grid/detail/vdb_seal.hpp"
@@ -28,7 +30,14 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 33;  // [byte]
+void requireMemory(double bytes) {
+  const double most = availableMemory();
+  if (bytes <= most) return;
+  std::ostringstream why;
+  why.precision(3);
+  why << "needs more memory than there is: " << bytes * 1e-9 << " GB, of " << most * 1e-9 << " GB";
+  throw InvalidInput(why.str());
+}
 
 std::string contents(const fs::path& file) {
   std::error_code failure;
@@ -39,7 +48,7 @@ std::string contents(const fs::path& file) {
   const std::uintmax_t size = fs::file_size(file, failure);
   if (failure) throw InvalidInput("cannot be read: " + failure.message());
   if (size == 0) throw InvalidInput("is empty");
-  if (size > kLargestFile) throw InvalidInput("is larger than 8 GiB");
+  requireMemory(static_cast<double>(size));
 
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InvalidInput(std::string("cannot be read: ") + std::strerror(errno));
@@ -79,6 +88,7 @@ class Grids {
     }
     wood_ = findFloatGrid(bytes, kWoodName);
     validateTransforms();
+    requireMemory(memory());
     in_.str(std::move(bytes));
   }
 
@@ -101,6 +111,15 @@ class Grids {
     const auto grid = findFloatGrid(bytes, name);
     if (!grid) throw InvalidInput(std::string("holds no grid named \"") + name + "\"");
     return *grid;
+  }
+
+  // At most, beside the file's bytes: the trees that are kept, one with a moment at a time, and all moments.
+  double memory() const {
+    double bytes = density_.memory + (wood_ ? wood_->memory : 0.);
+    if (!normals_[0]) return bytes;
+    double most = 0.;
+    for (const auto& moment : normals_) most = std::max(most, moment->memory);
+    return bytes + most + density_.memory / sizeof(float) * sizeof(LeafOrientation);
   }
 
   void validateTransforms() const {

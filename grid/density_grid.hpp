@@ -48,7 +48,8 @@ class DensityGrid {
   // Reads the grid named "density" of a .vdb file and, where the file has them, the second moments "normal_xx" and so
   // on and "wood". Throws InvalidInput on a file that is missing, empty, cut short or corrupt, holds no density or one
   // of these that is not of floats, lies in other cells or has values that cannot be. OpenVDB sees only what has been
-  // checked against the file's length: a hostile file costs memory in proportion to its length, which is 8 GiB at most.
+  // checked, and the file is refused before when its grids would take more than 8 GiB or the memory there is: a hostile
+  // file costs time in proportion to its length, and memory some 35 times that at most.
   static DensityGrid read(const std::filesystem::path& file);
 
   // Writes all grids into one file, whole or not at all: a .vdb file that other OpenVDB programs open, fog volumes,

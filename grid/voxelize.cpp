@@ -7,20 +7,18 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <memory>
 #include <span>
 #include <sstream>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
+#include "grid/detail/available_memory.hpp"
 #include "grid/detail/block_visits.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/triangle_clipping.hpp"
@@ -33,7 +31,6 @@ using Leaf = openvdb::FloatTree::LeafNodeType;  // a block of 8 x 8 x 8 cells
 constexpr double kMostCells = 0x1p20;      // of the tree along an axis
 constexpr double kFarthestCell = 0x1p30;   // from the origin along an axis
 constexpr double kMostCrossings = 0x1p30;  // of triangles and cells: minutes of work
-constexpr double kMostMemory = 0x1p33;     // [byte]
 static_assert(kBlock == Leaf::DIM);
 
 // Where triangles of a mesh lie in the grid: in units of a cell, from a corner of a block, so that far from the origin
@@ -73,14 +70,6 @@ class TrianglesInCells {
 
 glm::dvec3 normal(const ConvexPolygon& triangle) {
   return glm::cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
-}
-
-// What the system can still give, where it tells [byte].
-double availableMemory() {
-  std::ifstream in("/proc/meminfo");
-  for (std::string word; in >> word;)
-    if (double kibibytes = 0.; word == "MemAvailable:" && in >> kibibytes) return kibibytes * 1024.;
-  return std::numeric_limits<double>::infinity();
 }
 
 // What bounds how many cells triangles cross.
@@ -277,7 +266,7 @@ std::vector<BlockOfCells> blocksOf(const TreeMesh& mesh, const std::vector<glm::
 }  // namespace
 
 void requireMemory(double bytes, double cell_size) {
-  const double most = std::min(kMostMemory, availableMemory());
+  const double most = availableMemory();
   if (bytes <= most) return;
   std::ostringstream rule;
   rule.precision(3);
