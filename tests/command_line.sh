@@ -246,7 +246,7 @@ does "reflectance" slab --omega 1 --thickness 5
 does "1 leaf and 0 wood" plant flat.obj
 does "cells" voxelize leaf.obj -o leaf.vdb --cell-size 0.1
 does "cells" voxelize leaf.vdb
-does "1 x leaf.obj, one period of 2 m x 3 m" voxelize leaf.obj --stand --period 2 3 -o stand.vdb --cell-size 0.1
+does "one period of 2 m x 3 m" voxelize leaf.obj --stand --period 2 3 -o stand.vdb --cell-size 0.1
 refuses "--stand" voxelize leaf.vdb --stand
 # What other programs are told.
 vdb_print -l stand.vdb >printed || fail "vdb_print: status $?"
