@@ -22,6 +22,7 @@ struct VoxelizeOptions {
   SceneOptions scene;
   std::string output;
   std::optional<float> cell_size;
+  bool stand = false;
 };
 
 constexpr float kCellsAlongTree = 128.f;
@@ -42,22 +43,38 @@ double projectionAlongZ(const TreeMesh& mesh) {
   return projected / leafArea(mesh);
 }
 
+std::string standName(const Scene& scene) {
+  const std::string trees = fmt::format("{} x {}", scene.stand.trees.size(), scene.source);
+  if (!scene.stand.period) return trees;
+  return fmt::format("{}, one period of {:.6g} m x {:.6g} m", trees, scene.stand.period->x, scene.stand.period->y);
+}
+
 int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
   if (!options.output.empty()) requireGridFile(options.output);
   const bool from_grid = std::filesystem::path(options.scene.scene).extension() == ".vdb";
   double mesh_area = 0., mesh_projection = 0., seconds = 0.;
   GridSource source{.name = options.scene.scene, .hash = "", .program = versionText()};
   const DensityGrid grid = [&] {
-    if (from_grid) return DensityGrid::read(options.scene.scene);
+    if (from_grid) {
+      if (options.stand) throw InvalidInput("--stand: a .vdb file holds grids and no trees to place");
+      return DensityGrid::read(options.scene.scene);
+    }
     const Scene scene = readScene(options.scene);
     source.name = scene.source;
     source.hash = meshHash(*scene.tree);
     mesh_area = leafArea(*scene.tree);
+    if (options.stand) {
+      source.name = standName(scene);
+      source.hash = standHash(*scene.tree, scene.stand);
+      mesh_area *= static_cast<double>(scene.stand.trees.size());
+    }
     mesh_projection = projectionAlongZ(*scene.tree);
     const glm::vec3 size = leafBounds(*scene.tree).size();
     const float cell_size = options.cell_size.value_or(std::max({size.x, size.y, size.z}) / kCellsAlongTree);
     const auto start = std::chrono::steady_clock::now();
-    DensityGrid made = DensityGrid::voxelize(*scene.tree, cell_size, terminalProgress("voxelizing", run.quiet));
+    const Progress progress = terminalProgress("voxelizing", run.quiet);
+    DensityGrid made = options.stand ? DensityGrid::voxelizeStand(*scene.tree, scene.stand, cell_size, progress)
+                                     : DensityGrid::voxelize(*scene.tree, cell_size, progress);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return made;
   }();
@@ -110,13 +127,17 @@ int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
 
 void addVoxelize(CLI::App& app, RunOptions& options, int& status) {
   auto voxelize = std::make_shared<VoxelizeOptions>();
-  CLI::App* command = addCommand(app, options, "voxelize",
-                                 "Leaf area density, leaf orientation and wood of a scene's tree on OpenVDB grids; or "
-                                 "tell what a .vdb file holds");
+  CLI::App* command =
+      addCommand(app, options, "voxelize",
+                 "Leaf area density, leaf orientation and wood of a scene's tree or stand on OpenVDB grids; "
+                 "or tell what a .vdb file holds");
   addSceneOptions(*command, voxelize->scene);
   command->add_option("-o,--output", voxelize->output, "File to write: .vdb, or .nvdb for NanoVDB");
   command->add_option("--cell-size", voxelize->cell_size, "Side of a cell in metres (default: 1/128 of the tree)")
       ->check(numberIn(1e-5, 1e6, "in [1e-5, 1e6] m"));
+  command->add_flag(
+      "--stand", voxelize->stand,
+      "All trees of the scene's stand on one grid; one period of a periodic stand (default: its tree alone)");
   command->callback([voxelize, &options, &status] { status = runVoxelize(*voxelize, options); });
 }
 

@@ -1,6 +1,7 @@
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -18,6 +19,7 @@
 
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
+#include "grid/detail/available_memory.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/detail/vdb_layout.hpp"
 #include "grid/detail/vdb_seal.hpp"
@@ -26,7 +28,16 @@ namespace sunfleck {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 33;  // [byte]
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+void requireMemory(double bytes) {
+  const double most = availableMemory();
+  if (bytes <= most) return;
+  std::ostringstream why;
+  why.precision(3);
+  why << "needs more memory than there is: " << bytes * 1e-9 << " GB, of " << most * 1e-9 << " GB";
+  throw InvalidInput(why.str());
+}
 
 std::string contents(const fs::path& file) {
   std::error_code failure;
@@ -37,7 +48,7 @@ std::string contents(const fs::path& file) {
   const std::uintmax_t size = fs::file_size(file, failure);
   if (failure) throw InvalidInput("cannot be read: " + failure.message());
   if (size == 0) throw InvalidInput("is empty");
-  if (size > kLargestFile) throw InvalidInput("is larger than 8 GiB");
+  requireMemory(static_cast<double>(size));
 
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InvalidInput(std::string("cannot be read: ") + std::strerror(errno));
@@ -45,6 +56,23 @@ std::string contents(const fs::path& file) {
   in.read(bytes.data(), static_cast<std::streamsize>(size));
   if (!in) throw InvalidInput("cannot be read to its end");
   return bytes;
+}
+
+constexpr float kAny = std::numeric_limits<float>::max();
+
+std::string ofCell(const std::string& what, const openvdb::Coord& cell) {
+  std::ostringstream where;
+  where << what << " of cell " << cell;
+  return where.str();
+}
+
+// Finite values from `least` to `most`, and 0 outside the cells.
+void validateValues(const openvdb::FloatTree& tree, const std::string& what, float least, float most,
+                    const char* rule) {
+  require(tree.background() == 0.f, what + " outside the cells", tree.background(), "0");
+  for (auto value = tree.cbeginValueAll(); value; ++value)
+    if (!(std::isfinite(*value) && *value >= least && *value <= most))
+      require(false, ofCell(what, value.getCoord()), *value, rule);
 }
 
 // A file that is read: what has been walked of it, and the stream from which OpenVDB may read that.
@@ -60,15 +88,19 @@ class Grids {
     }
     wood_ = findFloatGrid(bytes, kWoodName);
     validateTransforms();
+    requireMemory(memory());
     in_.str(std::move(bytes));
   }
 
   DensityTrees trees() {
     DensityTrees trees;
     trees.density = tree(density_);
-    for (std::size_t i = 0; i < normals_.size(); ++i)
-      if (normals_[i]) trees.normals[i] = tree(*normals_[i]);
-    if (wood_) trees.wood = tree(*wood_);
+    validateValues(*trees.density, "density [1/m]", 0.f, kAny, "finite and not negative");
+    if (normals_[0]) readMoments(trees);
+    if (wood_) {
+      trees.wood = tree(*wood_);
+      validateValues(*trees.wood, "wood [1/m]", 0.f, kAny, "finite and not negative");
+    }
     return trees;
   }
   double cellSize() const { return density_.scale.x; }
@@ -79,6 +111,15 @@ class Grids {
     const auto grid = findFloatGrid(bytes, name);
     if (!grid) throw InvalidInput(std::string("holds no grid named \"") + name + "\"");
     return *grid;
+  }
+
+  // At most, beside the file's bytes: the trees that are kept, one with a moment at a time, and all moments.
+  double memory() const {
+    double bytes = density_.memory + (wood_ ? wood_->memory : 0.);
+    if (!normals_[0]) return bytes;
+    double most = 0.;
+    for (const auto& moment : normals_) most = std::max(most, moment->memory);
+    return bytes + most + density_.memory / sizeof(float) * sizeof(LeafOrientation);
   }
 
   void validateTransforms() const {
@@ -96,6 +137,39 @@ class Grids {
     };
     for (std::size_t i = 0; i < normals_.size(); ++i) same(normals_[i], kNormalNames[i]);
     same(wood_, kWoodName);
+  }
+
+  void readMoments(DensityTrees& trees) {
+    auto tile = trees.density->cbeginValueAll();
+    tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+      if (*tile != 0.f)
+        throw InvalidInput("holds second moments of leaf normals, and a density whose " +
+                           ofCell("block", tile.getCoord()) + " has one value: must have a value for each cell");
+    std::vector<Leaf*> blocks;
+    trees.density->getNodes(blocks);
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+      Leaf& leaf = *blocks[block];
+      for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) leaf.setActiveState(i, leaf.getValue(i) != 0.f);
+      leaf.setTransientData(static_cast<openvdb::Index32>(block));
+      trees.moments.emplace_back(leaf.onVoxelCount());
+    }
+    for (std::size_t i = 0; i < normals_.size(); ++i) {
+      const FloatTreePtr one = tree(*normals_[i]);
+      validateValues(*one, kNormalNames[i], -1.f, 1.f, "from -1 to 1");
+      const openvdb::FloatGrid::ConstAccessor values(*one);
+      for (const Leaf* leaf : blocks) {
+        auto moment = trees.moments[leaf->transientData()].begin();
+        for (auto cell = leaf->cbeginValueOn(); cell; ++cell) *moment++.*kMoments[i] = values.getValue(cell.getCoord());
+      }
+    }
+    for (const Leaf* leaf : blocks) {
+      auto moment = trees.moments[leaf->transientData()].begin();
+      for (auto cell = leaf->cbeginValueOn(); cell; ++cell)
+        if (!(*moment++).possible())
+          throw InvalidInput(ofCell("the second moments of leaf normals", cell.getCoord()) +
+                             ": must be a mean of n n^T over unit vectors n");
+    }
   }
 
   // Lets OpenVDB read the tree alone, at a place that has been walked: the rest of its reader trusts the file.
@@ -117,47 +191,13 @@ class Grids {
   std::istringstream in_{std::ios::in | std::ios::binary};
 };
 
-std::string ofCell(const std::string& what, const openvdb::Coord& cell) {
-  std::ostringstream where;
-  where << what << " of cell " << cell;
-  return where.str();
-}
-
-// Finite values from `least` to `most`, and 0 outside the cells.
-void validateValues(const openvdb::FloatTree& tree, const std::string& what, float least, float most,
-                    const char* rule) {
-  require(tree.background() == 0.f, what + " outside the cells", tree.background(), "0");
-  for (auto value = tree.cbeginValueAll(); value; ++value)
-    if (!(std::isfinite(*value) && *value >= least && *value <= most))
-      require(false, ofCell(what, value.getCoord()), *value, rule);
-}
-
-void validateValues(const DensityTrees& trees) {
-  constexpr float any = std::numeric_limits<float>::max();
-  validateValues(*trees.density, "density [1/m]", 0.f, any, "finite and not negative");
-  if (trees.wood) validateValues(*trees.wood, "wood [1/m]", 0.f, any, "finite and not negative");
-  if (!trees.normals[0]) return;
-  for (std::size_t i = 0; i < kNormalNames.size(); ++i)
-    validateValues(*trees.normals[i], kNormalNames[i], -1.f, 1.f, "from -1 to 1");
-  for (auto value = trees.density->cbeginValueAll(); value; ++value) {
-    if (*value == 0.f) continue;
-    const openvdb::Coord cell = value.getCoord();
-    const auto m = [&](std::size_t i) { return trees.normals[i]->getValue(cell); };
-    if (!LeafOrientation{m(0), m(1), m(2), m(3), m(4)}.possible())
-      throw InvalidInput(ofCell("the second moments of leaf normals", cell) +
-                         ": must be a mean of n n^T over unit vectors n");
-  }
-}
-
 }  // namespace
 
 DensityGrid DensityGrid::read(const fs::path& file) {
   initializeOpenVdb();
   try {
     Grids grids(contents(file));
-    DensityTrees trees = grids.trees();
-    validateValues(trees);
-    return DensityGrid(std::make_shared<const Cells>(std::move(trees), grids.cellSize(), grids.corner()));
+    return DensityGrid(std::make_shared<const Cells>(grids.trees(), grids.cellSize(), grids.corner()));
   } catch (const InvalidInput& wrong) {
     throw InvalidInput(file.string() + ": " + wrong.what());
   } catch (const std::bad_alloc&) {

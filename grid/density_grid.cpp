@@ -126,29 +126,24 @@ DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low
   box.include(at(leaves.box.max().offsetBy(1)));
 }
 
-LeafOrientation DensityGrid::Cells::orientation(const Coord& cell) const {
-  if (!normals[0] || density->getValue(cell) == 0.f) return {};
-  const auto moment = [&](std::size_t i) { return normals[i]->getValue(cell); };
-  return {moment(0), moment(1), moment(2), moment(3), moment(4)};
-}
-
 std::vector<DensityGrid::Cells::Named> DensityGrid::Cells::named() const {
+  const auto bytes = [](const FloatTree& tree) { return static_cast<std::size_t>(tree.memUsage()); };
   std::vector<Named> all{{kDensityName, "1/m",
                           "one-sided leaf area density: leaf area in a cell over the volume of the cell", density,
-                          occupied}};
-  if (normals[0])
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-      const std::string axes = std::string(kNormalNames[i]).substr(7);
-      all.push_back({kNormalNames[i], "1",
+                          occupied, bytes(*density)}};
+  if (!moments.empty())
+    for (const char* name : kNormalNames) {
+      const std::string axes = std::string(name).substr(7);
+      all.push_back({name, "1",
                      "second moment M_" + axes + " of leaf normals: mean of n_" + axes[0] + " n_" + axes[1] +
                          " over the leaf area in a cell; M_zz = 1 - M_xx - M_yy",
-                     normals[i], occupied});
+                     nullptr, occupied, occupied * sizeof(float)});
     }
   if (wood)
     all.push_back({kWoodName, "1/m",
                    "extinction by wood: its projected area in a cell, mean of all directions, over the "
                    "volume of the cell",
-                   wood, wood_cells});
+                   wood, wood_cells, bytes(*wood)});
   return all;
 }
 
@@ -185,17 +180,18 @@ double DensityGrid::projectedLeafArea(const Direction& s) const {
   const Cells& cells = *cells_;
   double sum = 0.;
   for (const double part : overBlocks(*cells.density, [&](const Leaf& leaf) {
+         const LeafOrientation* moments = cells.moments.empty() ? nullptr : cells.moments[leaf.transientData()].data();
          double projected = 0.;
          for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
            if (const float density = leaf.getValue(i); density != 0.f)
              projected += static_cast<double>(density) *
-                          static_cast<double>(cells.orientation(leaf.offsetToGlobalCoord(i)).projection(s));
+                          static_cast<double>((moments ? *moments++ : LeafOrientation{}).projection(s));
          return projected;
        }))
     sum += part;
-  overTiles(*cells.density, [&](float density, std::size_t count, const openvdb::CoordBBox& box) {
+  overTiles(*cells.density, [&](float density, std::size_t count, const openvdb::CoordBBox&) {
     sum += static_cast<double>(density) * static_cast<double>(count) *
-           static_cast<double>(cells.orientation(box.min()).projection(s));
+           static_cast<double>(LeafOrientation{}.projection(s));
   });
   return sum * cells.cell_size * cells.cell_size * cells.cell_size;
 }
@@ -210,7 +206,7 @@ double DensityGrid::crownArea() const {
 
 std::size_t DensityGrid::memoryBytes() const {
   std::size_t bytes = sizeof(Cells);
-  for (const Cells::Named& grid : cells_->named()) bytes += grid.tree->memUsage();
+  for (const Cells::Named& grid : cells_->named()) bytes += grid.bytes;
   return bytes;
 }
 
@@ -220,8 +216,7 @@ Bounds DensityGrid::occupied() const {
 
 std::vector<DensityGrid::Summary> DensityGrid::grids() const {
   std::vector<Summary> all;
-  for (const Cells::Named& grid : cells_->named())
-    all.push_back({grid.name, grid.unit, grid.cells, static_cast<std::size_t>(grid.tree->memUsage())});
+  for (const Cells::Named& grid : cells_->named()) all.push_back({grid.name, grid.unit, grid.cells, grid.bytes});
   return all;
 }
 

@@ -10,6 +10,7 @@
 #include "core/bounds.hpp"
 #include "core/directions.hpp"
 #include "core/progress.hpp"
+#include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
 #include "grid/leaf_orientation.hpp"
 
@@ -36,10 +37,19 @@ class DensityGrid {
   // `progress` says to stop.
   static DensityGrid voxelize(const TreeMesh& mesh, float cell_size, const Progress& progress = {});
 
+  // The same of all trees of a stand: the prototype is voxelized once, and once more for each further rotation, and its
+  // cells are placed by displacement (D2). A tree that is moved by whole cells keeps its values; otherwise each cell
+  // is shared among those that it overlaps. With a period, one period, about the middle of the trees' places: what
+  // stands beyond its sides enters at the opposite ones. The area is that of all trees. Independent of the number of
+  // threads, and of the order of the trees but for rounding. Throws as voxelize does, of the stand.
+  static DensityGrid voxelizeStand(const TreeMesh& mesh, const Stand& stand, float cell_size,
+                                   const Progress& progress = {});
+
   // Reads the grid named "density" of a .vdb file and, where the file has them, the second moments "normal_xx" and so
   // on and "wood". Throws InvalidInput on a file that is missing, empty, cut short or corrupt, holds no density or one
   // of these that is not of floats, lies in other cells or has values that cannot be. OpenVDB sees only what has been
-  // checked against the file's length: a hostile file costs memory in proportion to its length, which is 8 GiB at most.
+  // checked, and the file is refused before when its grids would take more than 8 GiB or the memory there is: a hostile
+  // file costs time in proportion to its length, and memory some 35 times that at most.
   static DensityGrid read(const std::filesystem::path& file);
 
   // Writes all grids into one file, whole or not at all: a .vdb file that other OpenVDB programs open, fog volumes,
@@ -74,5 +84,7 @@ class DensityGrid {
 
 // Tells meshes apart: a hash of their vertices and triangles as text, a UUID of version 5.
 std::string meshHash(const TreeMesh& mesh);
+// Tells stands apart: also by the places of the trees and the period.
+std::string standHash(const TreeMesh& mesh, const Stand& stand);
 
 }  // namespace sunfleck

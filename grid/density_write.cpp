@@ -47,8 +47,8 @@ void writeVdb(const openvdb::GridCPtrVec& grids, const fs::path& file) {
 openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridSource& source) {
   openvdb::GridCPtrVec all;
   for (const DensityGrid::Cells::Named& named : cells.named()) {
-    // The grid of the file is a view of the cells' tree and changes nothing in it.
-    auto grid = openvdb::FloatGrid::create(std::const_pointer_cast<openvdb::FloatTree>(named.tree));
+    // Moments stand next to the density.
+    auto grid = openvdb::FloatGrid::create(named.tree ? named.tree : cells.momentTree(all.size() - 1));
     auto transform = openvdb::math::Transform::createLinearTransform(cells.cell_size);
     const glm::dvec3 centre = cells.corner + 0.5 * cells.cell_size;  // of cell (0, 0, 0)
     transform->postTranslate(openvdb::Vec3d(centre.x, centre.y, centre.z));
@@ -66,6 +66,10 @@ openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridS
     text("unit_" + named.name, named.unit);
     text("length_unit", "m");
     text("source", source.name);
+    if (cells.period) {
+      number("period_x_m", cells.period->x);
+      number("period_y_m", cells.period->y);
+    }
     if (!source.hash.empty()) text("source_hash", source.hash);
     if (named.tree == cells.density) {
       number("leaf_area_m2", cells.leaf_area);
@@ -73,7 +77,7 @@ openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridS
         number("crown_area_m2", cells.crown_area);
         number("lai", cells.leaf_area / cells.crown_area);
       }
-      if (cells.normals[0]) text("projection_model", kProjection);
+      if (!cells.moments.empty()) text("projection_model", kProjection);
     }
     if (named.tree == cells.wood) number("projected_wood_area_m2", cells.wood_area);
     all.push_back(grid);

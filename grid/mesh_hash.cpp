@@ -1,6 +1,8 @@
 #include <boost/uuid/name_generator_sha1.hpp>
 #include <boost/uuid/nil_generator.hpp>
+#include <boost/uuid/string_generator.hpp>
 #include <boost/uuid/uuid_io.hpp>
+#include <vector>
 
 #include "grid/density_grid.hpp"
 
@@ -15,6 +17,15 @@ std::string meshHash(const TreeMesh& mesh) {
   add(mesh.leaf_triangles);
   add(mesh.wood_triangles);
   return to_string(hash);
+}
+
+std::string standHash(const TreeMesh& mesh, const Stand& stand) {
+  std::vector<float> numbers;
+  for (const Placement& tree : stand.trees)
+    numbers.insert(numbers.end(), {tree.position.x, tree.position.y, tree.position.z, tree.rotation});
+  if (stand.period) numbers.insert(numbers.end(), {stand.period->x, stand.period->y});
+  const auto of_mesh = boost::uuids::string_generator()(meshHash(mesh));
+  return to_string(boost::uuids::name_generator_sha1(of_mesh)(numbers.data(), numbers.size() * sizeof(float)));
 }
 
 }  // namespace sunfleck

@@ -1,6 +1,7 @@
 #include "grid/detail/vdb_layout.hpp"
 
 #include <openvdb/io/Compression.h>
+#include <openvdb/openvdb.h>
 #include <zlib.h>
 
 #include <array>
@@ -10,6 +11,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/require.hpp"
@@ -100,7 +102,7 @@ void readTransform(Cursor& in, VdbFloatGrid& grid) {
 // Walks OpenVDB's tree of 32^3 nodes of 16^3 nodes of blocks of 8^3 values.
 class TreeWalk {
  public:
-  TreeWalk(Cursor& in, const VdbFloatGrid& grid) : in_(in), grid_(grid) {}
+  TreeWalk(Cursor& in, VdbFloatGrid& grid) : in_(in), grid_(grid) {}
 
   void topology() {
     if (const auto buffers = in_.number<std::int32_t>("tree"); buffers != 1) corrupt(in_.at(), "number of buffers");
@@ -116,11 +118,13 @@ class TreeWalk {
     };
     for (std::uint32_t i = 0; i < tiles; ++i) {
       origin();
+      grid_.memory += kRootEntry;
       in_.take(sizeof(float), "tile");
       if (in_.number<std::uint8_t>("tile") > 1) corrupt(in_.at(), "tile");
     }
     for (std::uint32_t i = 0; i < children; ++i) {
       origin();
+      grid_.memory += kRootEntry;
       node<32>();
     }
   }
@@ -131,7 +135,12 @@ class TreeWalk {
   }
 
  private:
+  using Block = openvdb::FloatTree::LeafNodeType;
+  template <std::size_t Side>
+  using Node = std::conditional_t<Side == 32, openvdb::FloatTree::RootNodeType::ChildNodeType,
+                                  openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType>;
   static constexpr std::int32_t kRootSide = 32 * 16 * 8;
+  static constexpr double kRootEntry = 96.;  // a node of a std::map [byte]
 
   std::string_view mask(std::size_t bits) { return in_.take(bits / 8, "mask"); }
 
@@ -144,6 +153,7 @@ class TreeWalk {
   template <std::size_t Side>
   void node() {
     constexpr std::size_t size = Side * Side * Side;
+    grid_.memory += static_cast<double>(sizeof(Node<Side>));
     const std::string_view child_mask = mask(size);
     const std::string_view value_mask = mask(size);
     for (std::size_t i = 0; i < child_mask.size(); ++i)
@@ -154,6 +164,7 @@ class TreeWalk {
         node<16>();
       } else {
         mask(512);
+        grid_.memory += static_cast<double>(sizeof(Block) + Block::SIZE * sizeof(float));
         ++blocks_;
       }
   }
@@ -218,7 +229,7 @@ class TreeWalk {
   }
 
   Cursor& in_;
-  const VdbFloatGrid& grid_;
+  VdbFloatGrid& grid_;
   std::size_t blocks_ = 0;
   std::vector<char> unpacked_;
 };

@@ -253,6 +253,15 @@ does "reflectance" slab --omega 1 --thickness 5
 does "1 leaf and 0 wood" plant flat.obj
 does "cells" voxelize leaf.obj -o leaf.vdb --cell-size 0.1
 does "cells" voxelize leaf.vdb
+does "one period of 2 m x 3 m" voxelize leaf.obj --stand --period 2 3 -o stand.vdb --cell-size 0.1
+refuses "--stand" voxelize leaf.vdb --stand
+# What other programs are told.
+vdb_print -l stand.vdb >printed || fail "vdb_print: status $?"
+for line in "Name: density" "Name: normal_yz" "class: fog volume" "creator: Sunfleck .*, commit" "leaf_area_m2: " \
+    "lai: " "length_unit: m" "unit_density: 1/m" "unit_normal_xy: 1" "period_x_m: 2" "period_y_m: 3" \
+    "projection_model: .*G(s)" "source: 1 x leaf.obj" "source_hash: [0-9a-f-]\{36\}"; do
+  grep -q "$line" printed || fail "vdb_print: no \"$line\""
+done
 does "normal_xx" voxelize leaf.obj -o leaf.nvdb --cell-size 0.1
 does '"name": "density"' voxelize leaf.vdb --json
 does '"absorbed_leaves"' trace leaf.obj --paths 1000 --json

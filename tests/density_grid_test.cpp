@@ -192,9 +192,9 @@ TEST(D1_DensityGrid, RefusesCellSizesThatCannotBe) {
 }
 
 // Check that cells are refused before they are made when they would take more than 8 GiB, with the figure: a leaf of
-// half a square of 14,000 cells a side crosses 1.5 million blocks, of 6 grids of 2 KiB each and more.
+// half a square of 28,000 cells a side crosses 6 million blocks of 2 KiB each and more.
 TEST(D1_DensityGrid, RefusesMoreMemoryThanThereIs) {
-  const TreeMesh mesh = oneTriangle({0.f, 0.f, 0.f}, {14.f, 0.f, 0.f}, {0.f, 14.f, 0.f});
+  const TreeMesh mesh = oneTriangle({0.f, 0.f, 0.f}, {28.f, 0.f, 0.f}, {0.f, 28.f, 0.f});
   try {
     DensityGrid::voxelize(mesh, .001f);
     FAIL();

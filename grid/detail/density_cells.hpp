@@ -3,7 +3,10 @@
 #include <openvdb/openvdb.h>
 
 #include <array>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,14 +18,35 @@ using FloatTreePtr = openvdb::FloatTree::Ptr;
 
 // In the order of LeafOrientation.
 constexpr std::array<const char*, 5> kNormalNames = {"normal_xx", "normal_yy", "normal_xy", "normal_xz", "normal_yz"};
+constexpr std::array<float LeafOrientation::*, 5> kMoments = {
+    &LeafOrientation::xx, &LeafOrientation::yy, &LeafOrientation::xy, &LeafOrientation::xz, &LeafOrientation::yz};
 constexpr const char* kDensityName = "density";
 constexpr const char* kWoodName = "wood";
 
-// The trees of a density grid; background 0. Every value is finite, no density negative.
+// Values of a block of cells, of which those that are not 0 are active.
+struct BlockOfCells {
+  std::unique_ptr<openvdb::FloatTree::LeafNodeType> leaf;
+  std::vector<LeafOrientation> moments;  // of the active cells of `leaf`, in its order; or none
+};
+// [byte], without moments: values and mask of 512 cells, and what the allocator adds.
+constexpr double kBytesOfBlock = 512. * sizeof(float) + 192.;
+
+// The values of a density grid; background 0. Every value is finite, no density negative. Moments, which are but read
+// where there are leaves, are kept for these cells alone: OpenVDB's blocks keep room for all 512, of which leaves fill
+// some tenth.
 struct DensityTrees {
-  FloatTreePtr density;                 // [1/m]
-  std::array<FloatTreePtr, 5> normals;  // [1], where there is density; all or none of them
-  FloatTreePtr wood;                    // [1/m], or none
+  FloatTreePtr density = std::make_shared<openvdb::FloatTree>(0.f);  // [1/m]
+  // Of each block of `density`, by its transient data: of its active cells, in order. With moments, active cells are
+  // those of density, and there are no tiles. Empty when they are not known.
+  std::vector<std::vector<LeafOrientation>> moments;
+  FloatTreePtr wood;  // [1/m], or none
+
+  DensityTrees() = default;
+  explicit DensityTrees(std::vector<BlockOfCells> leaves);
+  void setWood(std::vector<BlockOfCells> blocks);
+
+  LeafOrientation orientation(const openvdb::Coord& cell) const;  // all directions alike where it is not known
+  FloatTreePtr momentTree(std::size_t i) const;                   // the moment kNormalNames[i] as a tree of its own
 };
 
 // The OpenVDB trees of a density grid and what is asked of them again and again. Cell (i, j, k) spans
@@ -33,21 +57,20 @@ struct DensityGrid::Cells : DensityTrees {
   std::size_t occupied = 0;  // cells whose density is not 0
   double leaf_area = 0.;     // [m^2]
   std::size_t wood_cells = 0;
-  double wood_area = 0.;   // projected, mean of all directions [m^2]
-  double crown_area = 0.;  // [m^2]; 0 when the density has tiles, as none of ours has
-  Bounds box;              // of the occupied cells [m]
+  double wood_area = 0.;               // projected, mean of all directions [m^2]
+  double crown_area = 0.;              // [m^2]; 0 when the density has tiles, as none of ours has
+  Bounds box;                          // of the occupied cells [m]
+  std::optional<glm::dvec2> period{};  // of a periodic stand along x and y [m]
 
   // Counts, sums and bounds the cells of the trees.
   Cells(DensityTrees trees, double side, const glm::dvec3& low);
 
-  LeafOrientation orientation(const openvdb::Coord& cell) const;
-
   struct Named {
     std::string name, unit, description;
-    FloatTreePtr tree;
-    std::size_t cells;
+    FloatTreePtr tree;         // none for a moment
+    std::size_t cells, bytes;  // occupied; in memory
   };
-  std::vector<Named> named() const;  // in the order in which they are written
+  std::vector<Named> named() const;  // in the order in which they are written: density, moments, wood
 };
 
 // openvdb::initialize, once for the process.

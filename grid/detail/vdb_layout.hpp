@@ -18,13 +18,14 @@ struct VdbFloatGrid {
   glm::dvec3 translation{0.};     // centre of cell (0, 0, 0) [m]
   std::size_t topology = 0;       // [byte] from the start of the file
   std::size_t values = 0;         // [byte]
+  double memory = 0.;             // that OpenVDB takes to read the tree [byte]
 };
 
 // Walks the bytes of a .vdb file along the one grid called `name` and checks that every size, count and offset in it
 // holds within the file, so that OpenVDB 10, which trusts them, may read the grid's tree: what it allocates is then
-// bounded by the length of the file, and nothing is read or written out of bounds. Formats 222 to 224, as OpenVDB 2 and
-// later write. Nothing when the file holds no grid of that name. Throws InvalidInput("<what is wrong>"), which the
-// caller completes with the file's name.
+// known, some 35 times the length of the file at most, and nothing is read or written out of bounds. Formats 222 to
+// 224, as OpenVDB 2 and later write. Nothing when the file holds no grid of that name. Throws InvalidInput("<what is
+// wrong>"), which the caller completes with the file's name.
 std::optional<VdbFloatGrid> findFloatGrid(std::string_view bytes, std::string_view name);
 
 }  // namespace sunfleck

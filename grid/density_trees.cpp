@@ -1,0 +1,61 @@
+#include <openvdb/openvdb.h>
+#include <tbb/parallel_for.h>
+
+#include <bit>
+#include <utility>
+
+#include "grid/detail/density_cells.hpp"
+
+namespace sunfleck {
+namespace {
+
+using openvdb::FloatTree;
+using Leaf = FloatTree::LeafNodeType;
+
+// How many cells of a block before the cell are active.
+std::size_t activeBefore(const Leaf& leaf, openvdb::Index cell) {
+  using Word = std::uint64_t;
+  constexpr openvdb::Index bits = 64;
+  const auto count = [](Word word) { return static_cast<std::size_t>(std::popcount(word)); };
+  std::size_t before = 0;
+  for (openvdb::Index i = 0; i < cell / bits; ++i) before += count(leaf.valueMask().getWord<Word>(i));
+  return before + count(leaf.valueMask().getWord<Word>(cell / bits) & ((Word{1} << cell % bits) - 1));
+}
+
+}  // namespace
+
+DensityTrees::DensityTrees(std::vector<BlockOfCells> leaves) {
+  for (BlockOfCells& block : leaves) {
+    if (block.leaf->isEmpty()) continue;
+    block.leaf->setTransientData(static_cast<openvdb::Index32>(moments.size()));
+    moments.push_back(std::move(block.moments));
+    density->addLeaf(block.leaf.release());
+  }
+}
+
+void DensityTrees::setWood(std::vector<BlockOfCells> blocks) {
+  wood = std::make_shared<FloatTree>(0.f);
+  for (BlockOfCells& block : blocks)
+    if (!block.leaf->isEmpty()) wood->addLeaf(block.leaf.release());
+}
+
+LeafOrientation DensityTrees::orientation(const openvdb::Coord& cell) const {
+  if (moments.empty()) return {};
+  const Leaf* leaf = density->probeConstLeaf(cell);
+  const openvdb::Index i = Leaf::coordToOffset(cell);
+  if (!leaf || !leaf->isValueOn(i)) return {};
+  return moments[leaf->transientData()][activeBefore(*leaf, i)];
+}
+
+FloatTreePtr DensityTrees::momentTree(std::size_t i) const {
+  auto tree = std::make_shared<FloatTree>(*density, 0.f, openvdb::TopologyCopy());
+  std::vector<Leaf*> blocks;
+  tree->getNodes(blocks);
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t block) {
+    auto moment = moments[blocks[block]->transientData()].begin();
+    for (auto cell = blocks[block]->beginValueOn(); cell; ++cell) cell.setValue(*moment++.*kMoments[i]);
+  });
+  return tree;
+}
+
+}  // namespace sunfleck
