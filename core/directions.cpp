@@ -49,18 +49,47 @@ void relax(std::vector<glm::dvec3>& axes) {
   }
 }
 
+// The upper half of 2 count spherical Fibonacci points.
+std::vector<glm::dvec3> fibonacciPoints(int count) {
+  std::vector<glm::dvec3> points;
+  const double golden_angle = std::numbers::pi * (3. - std::sqrt(5.));
+  for (int i = 0; i < count; ++i) {
+    const double z = 1. - (2. * i + 1.) / (2. * count);
+    const double r = std::sqrt(1. - z * z);
+    points.emplace_back(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z);
+  }
+  return points;
+}
+
+// Turns all axes alike, so that lines along them pass a level layer on ways as short as can be: in sum over the axes,
+// the length seen from above, |cot| of the elevation.
+void turnFromLevel(std::vector<glm::dvec3>& axes) {
+  constexpr int kTried = 4096;  // directions that may become the vertical
+  const auto way = [&](const glm::dvec3& up) {
+    double sum = 0.;
+    for (const glm::dvec3& axis : axes) {
+      const double rise = std::abs(glm::dot(axis, up));
+      sum += std::sqrt(std::max(0., 1. - rise * rise)) / std::max(rise, 1e-9);
+    }
+    return sum;
+  };
+  const std::vector<glm::dvec3> tried = fibonacciPoints(kTried);
+  std::vector<double> ways;
+  for (const glm::dvec3& up : tried) ways.push_back(way(up));
+  const auto best = std::min_element(ways.begin(), ways.end()) - ways.begin();
+  const Axes turned = axesAlong(glm::vec3(tried[static_cast<std::size_t>(best)]));
+  for (glm::dvec3& axis : axes)
+    axis = {glm::dot(axis, glm::dvec3(turned.right)), glm::dot(axis, glm::dvec3(turned.up)),
+            glm::dot(axis, glm::dvec3(turned.along))};
+}
+
 }  // namespace
 
 std::vector<Direction> spreadAxes(int count) {
   assert(count > 0);
-  std::vector<glm::dvec3> axes;
-  const double golden_angle = std::numbers::pi * (3. - std::sqrt(5.));
-  for (int i = 0; i < count; ++i) {
-    const double z = 1. - (2. * i + 1.) / (2. * count);  // the upper half of 2 count points
-    const double r = std::sqrt(1. - z * z);
-    axes.emplace_back(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z);
-  }
+  std::vector<glm::dvec3> axes = fibonacciPoints(count);
   if (count <= kMostRelaxedAxes) relax(axes);
+  turnFromLevel(axes);
   std::vector<Direction> directions;
   for (const glm::dvec3& axis : axes) directions.push_back(glm::normalize(glm::vec3(axis)));
   return directions;

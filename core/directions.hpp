@@ -24,7 +24,7 @@ Axes axesAlong(Direction along);
 // `count` > 0 axes spread evenly: each stands for itself and for the direction opposite. Up to kMostRelaxedAxes they
 // are moved from spherical Fibonacci points (Swinbank & Purser 2006) until their Coulomb energy hardly falls any more,
 // which for small sets makes the mean of a function of direction a third more accurate; beyond that the points are good
-// enough.
+// enough. The set is turned so that no axis is nearly level where that can be: a level line meets the most trees.
 std::vector<Direction> spreadAxes(int count);
 inline constexpr int kMostRelaxedAxes = 128;
 
