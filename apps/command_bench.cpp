@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bench_directions.hpp"
+#include "apps/bench_stand.hpp"
 #include "apps/commands.hpp"
 #include "apps/output_folder.hpp"
 #include "apps/terminal.hpp"
@@ -97,6 +98,14 @@ void addBench(CLI::App& app, RunOptions& options, int& status) {
   addSceneOptions(*of_directions, *scene);
   of_directions->callback(
       [scene, folder, &options, &status] { status = runBenchDirections(*scene, *folder, options); });
+
+  auto trees = std::make_shared<std::size_t>(1024);
+  CLI::App* of_stand = addCommand(*bench, options, "stand",
+                                  "What stands of trees cost to prepare and to change, beside the paper's Table 4");
+  folderOption(*of_stand, "stand_bench.csv and stand_bench.svg");
+  of_stand->add_option("--trees", *trees, "Trees of the largest stand (default 1024)")
+      ->check(numberIn(16., 1e5, "a whole number, 16 to 1e5"));
+  of_stand->callback([trees, folder, &options, &status] { status = runBenchStand(*trees, *folder, options); });
 
   folderOption(*bench, "slab_bench.csv and slab_bench.svg");
   bench->require_subcommand(0, 1);

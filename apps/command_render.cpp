@@ -6,6 +6,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/pictures.hpp"
+#include "apps/product_stats.hpp"
 #include "apps/scene_options.hpp"
 #include "apps/terminal.hpp"
 #include "core/require.hpp"
@@ -21,6 +22,7 @@ struct RenderOptions {
   GeometryEffort effort{.light_resolution = 1024};
   std::string model = "sppg", output;
   float exposure = kExposure;
+  bool stats = false;
 };
 
 int runRender(const RenderOptions& options, const RunOptions& run) {
@@ -30,24 +32,24 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  const StandGeometry stand =
-      standGeometry(scene, options.effort, terminalProgress("opacity maps and cells", run.quiet));
-  const double prepared = seconds();
   const Model model = options.model == "ss" ? Model::ss : options.model == "spp" ? Model::spp : Model::sppg;
+  StandGeometry stand(options.effort);
+  stand.update(scene, model, treesInPicture(scene, cameraOf(scene)),
+               terminalProgress("opacity maps and cells", run.quiet));
+  const double prepared = seconds();
   const Image image = modelPicture(scene, stand, model);
   const double shaded = seconds() - prepared;
   writeImage(options.output, image, options.exposure);
-  if (run.json)
-    fmt::print("{}\n", nlohmann::ordered_json{{"output", options.output},
-                                              {"model", options.model},
-                                              {"width", image.width},
-                                              {"height", image.height},
-                                              {"prepare_seconds", prepared},
-                                              {"shade_seconds", shaded}}
-                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  else
-    fmt::print("wrote {}: {} x {}, {}, {:.0f} ms to prepare, {:.0f} ms to draw\n", options.output, image.width,
-               image.height, options.model, 1e3 * prepared, 1e3 * shaded);
+  if (run.json) {
+    nlohmann::ordered_json result{{"output", options.output}, {"model", options.model},      {"width", image.width},
+                                  {"height", image.height},   {"prepare_seconds", prepared}, {"shade_seconds", shaded}};
+    if (options.stats) result["products"] = statsJson(stand.costs());
+    fmt::print("{}\n", result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    return 0;
+  }
+  fmt::print("wrote {}: {} x {}, {}, {:.0f} ms to prepare, {:.0f} ms to draw\n", options.output, image.width,
+             image.height, options.model, 1e3 * prepared, 1e3 * shaded);
+  if (options.stats) fmt::print("\n{}", statsTable(stand.costs()));
   return 0;
 }
 
@@ -68,6 +70,7 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
       ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
+  command->add_flag("--stats", render->stats, "Tell what was computed, reused and skipped, and what it took");
   command->callback([render, &options, &status] { status = runRender(*render, options); });
 }
 

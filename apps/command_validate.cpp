@@ -6,6 +6,7 @@
 #include "apps/commands.hpp"
 #include "apps/output_folder.hpp"
 #include "apps/pictures.hpp"
+#include "apps/product_stats.hpp"
 #include "apps/scene_options.hpp"
 #include "apps/terminal.hpp"
 #include "apps/version.hpp"
@@ -32,6 +33,7 @@ struct ValidateOptions {
   double paths = 4e6;
   int samples = 64;
   std::string stand = "auto", folder = "sunfleck-report";
+  bool stats = false;
   bool no_pictures = false;
 };
 
@@ -145,10 +147,10 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
   requireWritable(fs::path(options.folder) / "report.html");
   std::vector<Validation> validations;
   std::vector<ReportPicture> pictures;
+  StandGeometry stand(options.geometry);
   for (const Scene& scene : scenes) {
     if (interrupted()) break;
-    const StandGeometry stand =
-        standGeometry(scene, options.geometry, terminalProgress("opacity maps and cells", run.quiet));
+    stand.update(scene, Model::sppg, std::nullopt, terminalProgress("opacity maps and cells", run.quiet));
     validations.push_back(
         validate(scene, stand, options.effort, terminalProgress("Monte Carlo, " + kindOf(scene), run.quiet)));
     if (pictures.empty() && !options.no_pictures && !interrupted())
@@ -168,6 +170,7 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
     fmt::print("{}", json);
   else
     fmt::print("{}\nwrote {}\n", table(validations), (folder / "report.html").string());
+  if (options.stats) fmt::print(run.json ? stderr : stdout, "\n{}", statsTable(stand.costs()));
   if (interrupted()) fmt::print(stderr, "sunfleck: ended early: the report rests on the paths done\n");
   return interrupted() ? 1 : 0;
 }
@@ -198,6 +201,8 @@ void addValidate(CLI::App& app, RunOptions& options, int& status) {
       ->check(numberIn(0., 2., "0, 1 or 2"));
   command->add_flag("--with-wood", validate->effort.with_wood,
                     "Let wood stop light in Monte Carlo; the models know leaves only");
+  command->add_flag("--stats", validate->stats,
+                    "Tell what was computed, reused and skipped, and what it took; on stderr with --json");
   command->add_flag("--no-pictures", validate->no_pictures, "Make no pictures");
   command
       ->add_option("--map", validate->geometry.light_resolution, "Pixels along the light's opacity map (default 512)")

@@ -5,8 +5,8 @@
 namespace sunfleck::apps {
 
 Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model) {
-  gl::ShadingData data{.sun = &stand.light, .cells = &stand.cells};
-  for (const std::vector<float>& of_tree : stand.compensation) data.compensation.emplace_back(of_tree);
+  gl::ShadingData data{.sun = &stand.light(), .cells = &stand.cells()};
+  for (const std::vector<float>& of_tree : stand.compensation()) data.compensation.emplace_back(of_tree);
   return gl::treePicture(scene, data, model);
 }
 

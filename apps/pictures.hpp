@@ -16,7 +16,7 @@ inline constexpr float kExposure = 3.f;
 // Lets a picture stand on a ground that shows its shadows: one that reflects a sixth of the light.
 void showGround(Scene& scene);
 
-// The scene shaded by a model on the GPU; `stand` is standGeometry() of it.
+// The scene shaded by a model on the GPU; `stand` is up to date for it and the model.
 Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model);
 
 // The rays of the scene's camera.

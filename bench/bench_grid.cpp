@@ -7,7 +7,7 @@
 
 #include "grid/deep_opacity_map.hpp"
 #include "grid/density_grid.hpp"
-#include "grid/instance_cells.hpp"
+#include "grid/foliage_stand.hpp"
 #include "grid/leaf_depth.hpp"
 #include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
@@ -73,29 +73,63 @@ bool holdsProjectedArea(const DeepOpacityMap& map, const TreeMesh& mesh) {
   return std::abs(counted - expected) <= 1e-2 * expected;
 }
 
-// The cherry's 11 deep opacity maps of 256 x 256 pixels, which serve 22 directions; unit: maps/s of wall time.
+// A tree's map along the light, wood included; unit: maps/s of wall time. Argument: pixels along the longer side.
+void lightMap(benchmark::State& state, const char* name) {
+  const TreeMesh mesh = grow(species(name), 1);
+  const int resolution = static_cast<int>(state.range(0));
+  if (!holdsProjectedArea(DeepOpacityMap(mesh, kDown, resolution), mesh))
+    return state.SkipWithError("the map does not hold the area of the leaves");
+  for (auto _ : state) benchmark::DoNotOptimize(DeepOpacityMap(mesh, kDown, resolution));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK_CAPTURE(lightMap, cherry, "cherry")
+    ->ArgName("pixels")
+    ->Arg(256)
+    ->Arg(512)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(lightMap, maple, "maple")
+    ->ArgName("pixels")
+    ->Arg(256)
+    ->Arg(512)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+// The cherry's 11 deep opacity maps, which serve 22 directions; unit: maps/s of wall time. Argument: pixels along the
+// longer side.
 void opacityMaps(benchmark::State& state) {
   const TreeMesh mesh = grow(species("cherry"), 1);
   const std::vector<Direction> directions = spreadAxes(kDirections / 2);
-  for (const DeepOpacityMap& map : deepOpacityMaps(mesh, directions, 256))
+  const int resolution = static_cast<int>(state.range(0));
+  for (const DeepOpacityMap& map : deepOpacityMaps(mesh, directions, resolution))
     if (!holdsProjectedArea(map, mesh)) return state.SkipWithError("a map does not hold the area of the leaves");
-  for (auto _ : state) benchmark::DoNotOptimize(deepOpacityMaps(mesh, directions, 256));
+  for (auto _ : state) benchmark::DoNotOptimize(deepOpacityMaps(mesh, directions, resolution));
   state.SetItemsProcessed(state.iterations() * kDirections / 2);
 }
-BENCHMARK(opacityMaps)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(opacityMaps)->ArgName("pixels")->Arg(128)->Arg(256)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-// Depths and G of the cherry's 16^3 cells from its maps; unit: active cells/s of wall time.
-void compensation(benchmark::State& state) {
-  const TreeMesh mesh = grow(species("cherry"), 1);
-  const std::vector<DeepOpacityMap> maps = deepOpacityMaps(mesh, spreadAxes(kDirections / 2), 256);
-  const DeepOpacityMap light(mesh, kDown, 512);
-  const CellGrid cells = cellGrid(mesh, 16);
-  const auto g = [&] { return cellCompensation(cells, maps, cellDepths(cells, maps, {}), light, {}); };
-  for (const float value : g())
-    if (!(value >= 0.f && value <= 1.f)) return state.SkipWithError("a G-factor is no share");
-  for (auto _ : state) benchmark::DoNotOptimize(g());
-  state.SetItemsProcessed(state.iterations() * std::count(cells.active.begin(), cells.active.end(), true));
+// Everything that 64 cherries need for SPPG under one sun: opacity maps, depths of their cells, and G (steps 2, 3 and 5
+// of Shinya et al. 2013, Table 4); unit: active cells/s of wall time.
+void prepareStand(benchmark::State& state) {
+  const auto tree = std::make_shared<const TreeMesh>(grow(species("cherry"), 1));
+  const glm::vec3 size = leafBounds(*tree).size();
+  const auto side = static_cast<int>(state.range(0));
+  std::int64_t cells = 0;
+  for (auto _ : state) {
+    FoliageStand stand;
+    stand.addPrototype(tree);
+    for (int i = 0; i < side * side; ++i)
+      stand.add(0, {static_cast<float>(i % side) * size.x, static_cast<float>(i / side) * size.y, 0.f});
+    stand.setLights(std::span(&kDown, 1));
+    stand.prepareCompensation(stand.allInstances());
+    for (const std::size_t i : stand.allInstances()) {
+      for (const float g : stand.compensation(i, 0))
+        if (!(g >= 0.f && g <= 1.f)) return state.SkipWithError("a G-factor is no share");
+      cells += static_cast<std::int64_t>(stand.compensation(i, 0).size());
+    }
+  }
+  state.SetItemsProcessed(cells);
 }
-BENCHMARK(compensation)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(prepareStand)->ArgName("side")->Arg(1)->Arg(8)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -4,11 +4,15 @@
 
 namespace sunfleck {
 
+// Red, green and blue: the bands a picture is made in.
+inline constexpr int kBands = 3;
+
 // A leaf that scatters by Lambert's law on both sides, in one band of light.
 struct LeafOptics {
   Number reflectance = 0.475f;    // rho [1], >= 0: share of the arriving light sent back on the side it came from
   Number transmittance = 0.475f;  // tau [1], >= 0: share sent on through the leaf; rho + tau <= 1
   Number albedo() const { return reflectance + transmittance; }  // omega [1], 0 .. 1
+  bool operator==(const LeafOptics&) const = default;
 };
 
 // Throws InvalidInput when a share is negative, not a number, or their sum exceeds 1.

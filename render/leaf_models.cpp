@@ -7,7 +7,7 @@
 #include <chrono>
 #include <span>
 
-#include "grid/instance_cells.hpp"
+#include "grid/cell_grid.hpp"
 #include "grid/neighbours.hpp"
 #include "spp/slab.hpp"
 #include "spp/slab_arrays.hpp"
@@ -54,16 +54,16 @@ LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand) {
   geometry.depths.resize(trees);
   tbb::parallel_for(std::size_t{0}, trees, [&](std::size_t tree) {
     geometry.depths[tree] =
-        leafDepths(mesh, stand.light, neighbourDisplacements(scene.stand, stand.cells.leaves, tree));
+        leafDepths(mesh, stand.light(), neighbourDisplacements(scene.stand, stand.cells().leaves, tree));
   });
   geometry.depth_seconds = secondsSince(start);
 
   const auto start_interpolation = Clock::now();
   const std::vector<glm::vec3> centres = leafCentres(mesh);
-  for (const std::vector<float>& of_cells : stand.compensation) {
+  for (const std::vector<float>& of_cells : stand.compensation()) {
     std::vector<float>& of_leaves = geometry.compensation.emplace_back();
     of_leaves.reserve(centres.size());
-    for (const glm::vec3& centre : centres) of_leaves.push_back(interpolate(stand.cells, of_cells, centre));
+    for (const glm::vec3& centre : centres) of_leaves.push_back(interpolate(stand.cells(), of_cells, centre));
   }
   geometry.compensation_seconds = secondsSince(start_interpolation);
   return geometry;

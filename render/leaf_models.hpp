@@ -19,6 +19,7 @@ struct LeafGeometry {
   double depth_seconds = 0.;                     // wall time for depths and projections
   double compensation_seconds = 0.;              // wall time for G of the leaves from that of the cells
 };
+// `stand` is up to date for the scene, with G.
 LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand);
 
 // (R7) Irradiance of each leaf of the prototype, both sides together per one-sided area, for sun irradiance 1 on a

@@ -42,6 +42,21 @@ Bounds bounds(const Scene& scene) {
   return box;
 }
 
+std::vector<std::size_t> treesInPicture(const Scene& scene, const Camera& camera) {
+  const Axes axes = viewAxes(camera);
+  const Bounds prototype = bounds(*scene.tree);
+  const float half_height = camera.half_width * static_cast<float>(camera.height) / static_cast<float>(camera.width);
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < scene.stand.trees.size(); ++i) {
+    const Bounds box = standing(*scene.tree, prototype, scene.stand.trees[i]);
+    const glm::vec3 half = 0.5f * box.size(), away = box.centre() - camera.target;
+    const bool beside = std::abs(glm::dot(away, axes.right)) > camera.half_width + glm::dot(half, glm::abs(axes.right));
+    const bool above = std::abs(glm::dot(away, axes.up)) > half_height + glm::dot(half, glm::abs(axes.up));
+    if (scene.stand.period || !(beside || above)) seen.push_back(i);
+  }
+  return seen;
+}
+
 // The picture is as large as what it shows: the trees' vertices, not the corners of their boxes.
 Camera showingAll(const Scene& scene, Camera camera) {
   const Axes axes = viewAxes(camera);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/directions.hpp"
 #include "core/leaf_optics.hpp"
@@ -25,9 +26,6 @@ struct Camera {
 
 // Where a scene is looked at from unless it says so: somewhat from above, 10 degrees, and aside, 20 degrees.
 inline constexpr Camera kOverview{.elevation = 0.1745f, .azimuth = 0.3491f};
-
-// Red, green and blue: the bands a picture is made in.
-inline constexpr int kBands = 3;
 
 // What is simulated: one prototype tree, its copies, the optics and the sun.
 struct Scene {
@@ -50,6 +48,9 @@ Bounds bounds(const Scene& scene);    // of all trees of the stand [m]
 Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
 // The camera moved and widened so that the whole stand fills its picture; direction and pixels stay.
 Camera showingAll(const Scene& scene, Camera camera);
+// Trees of the stand that may be seen in the camera's picture; all of them in a periodic stand, which is drawn with
+// copies.
+std::vector<std::size_t> treesInPicture(const Scene& scene, const Camera& camera);
 // Right and up of the picture, and the direction of sight. Seen as people see, right x up points at the eye, so that
 // these axes are left-handed: right x up = -along.
 Axes viewAxes(const Camera& camera);

@@ -1,7 +1,5 @@
 #include "render/stand_geometry.hpp"
 
-#include <chrono>
-#include <stdexcept>
 #include <string>
 
 #include "core/require.hpp"
@@ -19,32 +17,46 @@ void requireModelled(const Scene& scene) {
   periodsAround(stand, leafBounds(*scene.tree));
 }
 
-StandGeometry standGeometry(const Scene& scene, const GeometryEffort& effort, const Progress& progress) {
+StandGeometry::StandGeometry(const GeometryEffort& effort)
+    : effort_(effort),
+      stand_(std::make_unique<FoliageStand>(FoliageEffort{.axes = spreadAxes(effort.sample_directions / 2),
+                                                          .sample_resolution = effort.sample_resolution,
+                                                          .light_resolution = effort.light_resolution,
+                                                          .cells = effort.cells})) {}
+
+void StandGeometry::update(const Scene& scene, Model model, std::optional<std::span<const std::size_t>> trees,
+                           const Progress& progress) {
   requireModelled(scene);
-  using Clock = std::chrono::steady_clock;
-  const auto secondsSince = [](Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
+  if (!tree_)
+    stand_->addPrototype(scene.tree);
+  else if (tree_ != scene.tree)
+    stand_->replacePrototype(0, scene.tree);
+  tree_ = scene.tree;
+  stand_->setPeriod(scene.stand.period);
+  const std::size_t before = stand_->instances(), now = scene.stand.trees.size();
+  for (std::size_t i = 0; i < now; ++i)
+    if (i < before)
+      stand_->move(i, scene.stand.trees[i].position);
+    else
+      stand_->add(0, scene.stand.trees[i].position);
+  for (std::size_t i = now; i < before; ++i) stand_->remove(i);
+  const Direction sun = scene.sun();
+  stand_->setLights(std::span(&sun, 1));
 
-  const TreeMesh& mesh = *scene.tree;
-  const auto start = Clock::now();
-  StandGeometry stand{.light = DeepOpacityMap(mesh, scene.sun(), effort.light_resolution)};
-  stand.light_seconds = secondsSince(start);
-
-  const auto start_compensation = Clock::now();
-  const std::size_t trees = scene.stand.trees.size();
-  const std::vector<DeepOpacityMap> maps =
-      deepOpacityMaps(mesh, spreadAxes(effort.sample_directions / 2), effort.sample_resolution);
-  stand.cells = cellGrid(mesh, effort.cells);
-  for (std::size_t tree = 0; tree < trees; ++tree) {
-    const std::vector<glm::vec3> neighbours = neighbourDisplacements(scene.stand, stand.cells.leaves, tree);
-    const std::vector<float> depths = cellDepths(stand.cells, maps, neighbours);
-    stand.compensation.push_back(cellCompensation(stand.cells, maps, depths, stand.light, neighbours));
-    if (!goOn(progress, static_cast<double>(tree + 1) / static_cast<double>(trees)))
-      throw std::runtime_error("interrupted");
+  light_seconds_ = compensation_seconds_ = 0.;
+  cells_ = &stand_->cells(0);
+  {
+    const Stopwatch watch(light_seconds_);
+    light_ = &stand_->lightMap(0, 0);
   }
-  stand.compensation_seconds = secondsSince(start_compensation);
-  return stand;
+  compensation_.clear();
+  if (model != Model::sppg) return;
+  const Stopwatch watch(compensation_seconds_);
+  const std::vector<std::size_t> all = stand_->allInstances();
+  const std::span<const std::size_t> wanted = trees.value_or(all);
+  stand_->prepareCompensation(wanted, progress);
+  compensation_.assign(now, std::vector<float>(cells_->count(), 0.f));
+  for (const std::size_t i : wanted) compensation_[i] = spread(*cells_, stand_->compensation(i, 0));
 }
 
 }  // namespace sunfleck

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/progress.hpp"
-#include "grid/deep_opacity_map.hpp"
-#include "grid/instance_cells.hpp"
+#include "grid/foliage_stand.hpp"
+#include "render/model.hpp"
 #include "render/scene.hpp"
 
 namespace sunfleck {
@@ -17,16 +20,6 @@ struct GeometryEffort {
   int cells = 16;               // along the longest side of a tree
 };
 
-// What leaves and fragments read to be shaded, whatever their optics: the prototype's map along the light, and the
-// cells of each tree with their G-factors.
-struct StandGeometry {
-  DeepOpacityMap light;
-  CellGrid cells;
-  std::vector<std::vector<float>> compensation;  // of each tree: G per cell [1], 0 .. 1
-  double light_seconds = 0.;                     // wall time for the light's map
-  double compensation_seconds = 0.;              // wall time for the sample maps, the depths of the cells and G
-};
-
 // The models hold numbers for every leaf of every tree.
 inline constexpr std::size_t kMostTrees = 1024;
 
@@ -35,7 +28,35 @@ inline constexpr std::size_t kMostTrees = 1024;
 // wide.
 void requireModelled(const Scene& scene);
 
-// Throws InvalidInput as requireModelled() does, and std::runtime_error("interrupted") when `progress` ends it.
-StandGeometry standGeometry(const Scene& scene, const GeometryEffort& effort, const Progress& progress = {});
+// What leaves and fragments read to be shaded, whatever their optics: the prototype's map along the light, and the
+// cells of each tree with their G-factors. It serves one scene after another and computes only what the next one
+// changes.
+class StandGeometry {
+ public:
+  explicit StandGeometry(const GeometryEffort& effort = {});
+
+  // Brings the light's map up to date for the scene, and for a model with G the G of the trees listed. Throws
+  // InvalidInput as requireModelled() does, and std::runtime_error("interrupted") when `progress` ends it.
+  //   trees  of the scene's stand; none: all
+  void update(const Scene& scene, Model model, std::optional<std::span<const std::size_t>> trees = std::nullopt,
+              const Progress& progress = {});
+
+  const DeepOpacityMap& light() const { return *light_; }  // along the scene's sun
+  const CellGrid& cells() const { return *cells_; }        // of the prototype
+  // Of each tree: G per cell [1], 0 .. 1, and 0 for trees that were not listed. Empty where the model has no G.
+  const std::vector<std::vector<float>>& compensation() const { return compensation_; }
+  double lightSeconds() const { return light_seconds_; }  // wall time of the last update for the light's map
+  double compensationSeconds() const { return compensation_seconds_; }  // and for all that G needs
+  std::vector<ProductCost> costs() const { return stand_->costs(); }    // of all updates
+
+ private:
+  GeometryEffort effort_;
+  std::unique_ptr<FoliageStand> stand_;
+  std::shared_ptr<const TreeMesh> tree_;
+  const DeepOpacityMap* light_ = nullptr;
+  const CellGrid* cells_ = nullptr;
+  std::vector<std::vector<float>> compensation_;
+  double light_seconds_ = 0., compensation_seconds_ = 0.;
+};
 
 }  // namespace sunfleck

@@ -14,4 +14,10 @@ namespace sunfleck::spp {
 float compensation(std::span<const float> cosines, std::span<const float> edges, float depth, float thickness,
                    float mu0);
 
+// The same at many places at once, in vectors of the machine (spp/slab_arrays.hpp).
+//   edges  a row of places for each direction
+//   depth, thickness, compensation  of each place
+void compensation(std::span<const float> cosines, std::span<const float> edges, std::span<const float> depth,
+                  std::span<const float> thickness, float mu0, std::span<float> compensation);
+
 }  // namespace sunfleck::spp

@@ -215,6 +215,8 @@ refuses "mu0 = 1e-50: must be at least 1e-07" slab --model twostream --mu0 1e-50
 printf 'g,omega,thickness,mu0\n0,0.9,1,1e-50\n' >grazing.csv
 refuses "mu0 = 1e-50: must be at least 1e-07" slab --model sppr --batch grazing.csv
 refuses "nosuch" bench directions nosuch -o dirs
+refuses "whole number, 16 to 1e5" bench stand --trees 15 -o dirs
+refuses "must not be empty" bench stand -o ""
 refuses "even" validate cherry --directions 7 -o dirs
 refuses "--frobnicate" tables --frobnicate
 
@@ -267,6 +269,9 @@ does '"name": "density"' voxelize leaf.vdb --json
 does '"absorbed_leaves"' trace leaf.obj --paths 1000 --json
 does '"models"' --json leaf.obj --paths 1000 --no-pictures -o report
 does "wrote" validate leaf.obj --paths 1000 --no-pictures -o report
+does "sky light" validate leaf.obj --paths 1000 --no-pictures -o report --stats
+does "cherry" bench stand --trees 16 -o benches --quiet
+does '"move_tree_seconds"' bench stand --trees 16 -o benches --quiet --json
 [ -s report/report.html ] && [ -s report/report.json ] || fail "validate: no report"
 
 head -c "$(($(stat -c %s leaf.vdb) / 2))" leaf.vdb >truncated.vdb

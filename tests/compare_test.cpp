@@ -97,7 +97,8 @@ Validation smallValidation(bool periodic, float albedo) {
   Scene scene{.name = "<layer>", .source = "test", .tree = std::make_shared<const TreeMesh>(randomLayer(layer, 1))};
   scene.leaf.fill({.reflectance = 0.5f * albedo, .transmittance = 0.5f * albedo});
   if (periodic) scene.stand.period = layer.size;
-  const StandGeometry stand = standGeometry(scene, {.light_resolution = 128, .sample_resolution = 64, .cells = 8});
+  StandGeometry stand({.light_resolution = 128, .sample_resolution = 64, .cells = 8});
+  stand.update(scene, Model::sppg);
   return validate(scene, stand, {.trace = {.paths = 200'000, .seed = 11}});
 }
 
@@ -123,9 +124,9 @@ TEST(R7_LeafIrradiance, OfFlatLeavesUnderTheSun) {
   finish(mesh, "test");
   Scene scene{.name = "two", .source = "test", .tree = std::make_shared<const TreeMesh>(mesh)};
   scene.leaf.fill({.reflectance = 0.f, .transmittance = 0.f});
-  const Validation v =
-      validate(scene, standGeometry(scene, {.light_resolution = 32, .sample_resolution = 32, .cells = 4}),
-               {.trace = {.paths = 10'000, .seed = 2}});
+  StandGeometry stand({.light_resolution = 32, .sample_resolution = 32, .cells = 4});
+  stand.update(scene, Model::sppg);
+  const Validation v = validate(scene, stand, {.trace = {.paths = 10'000, .seed = 2}});
   for (const ModelResult& m : v.models) {
     EXPECT_FLOAT_EQ(m.irradiance[0], 1.f) << nameOf(m.model);
     EXPECT_FLOAT_EQ(m.irradiance[1], std::exp(-1.f)) << nameOf(m.model);

@@ -319,7 +319,7 @@ TEST(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
     scene.camera = cameraFrom(90.f, 0.1f, 2);
     const DeepOpacityMap map(*scene.tree, scene.sun(), 64);
     const CellGrid cells{
-        .low = glm::vec3(-3.f), .cell_size = 2.f, .size = glm::ivec3(3), .active = std::vector<bool>(27, true)};
+        .low = glm::vec3(-3.f), .cell_size = 2.f, .size = glm::ivec3(3), .slot = std::vector<std::uint32_t>(27)};
     const std::vector<float> quarter(27, 0.25f);
     const gl::ShadingData data{.sun = &map, .cells = &cells, .compensation = {quarter}};
 

@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include "core/require.hpp"
 #include "grid/deep_opacity_map.hpp"
-#include "grid/instance_cells.hpp"
 #include "grid/leaf_depth.hpp"
 #include "grid/neighbours.hpp"
 #include "plants/random_leaves.hpp"
@@ -78,6 +82,27 @@ TEST(D3_DeepOpacityMap, KeepsTheProjectedArea) {
   }
 }
 
+// (D3) (D6) Check that one thread and four make the same map and the same depths, bit by bit.
+TEST(D3_DeepOpacityMap, IsTheSameForAnyNumberOfThreads) {
+  const TreeMesh mesh = randomCrown({}, 3);
+  const std::vector<glm::vec3> neighbours{{1.5f, 0.2f, 0.f}, {-0.7f, 1.1f, 0.3f}};
+  const Direction slanted = glm::normalize(glm::vec3(0.3f, -0.5f, -0.8f));
+  const auto made = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    DeepOpacityMap map(mesh, slanted, 256);
+    LeafDepths depths = leafDepths(mesh, map, neighbours);
+    return std::pair(std::move(map), std::move(depths));
+  };
+  const auto [map, depths] = made(1);
+  const auto [same_map, same_depths] = made(4);
+  EXPECT_TRUE(std::ranges::equal(map.first(), same_map.first()));
+  EXPECT_TRUE(std::ranges::equal(map.crossings(), same_map.crossings(), [](const Crossing& a, const Crossing& b) {
+    return a.depth == b.depth && a.leaf == b.leaf;
+  }));
+  EXPECT_EQ(depths.depth, same_depths.depth);
+  EXPECT_EQ(depths.thickness, same_depths.thickness);
+}
+
 // (D3) Check that inSpace and inMap undo each other. Error: float rounding of metres.
 TEST(D3_DeepOpacityMap, MapsPointsBothWays) {
   const DeepOpacityMap map(stack({1.f, 0.f}), glm::normalize(glm::vec3(0.3f, -0.5f, -0.8f)), 20);
@@ -86,6 +111,43 @@ TEST(D3_DeepOpacityMap, MapsPointsBothWays) {
   EXPECT_NEAR((at.x - map.corner().x) / map.pixelSize(), 7.5f, 1e-4f);
   EXPECT_NEAR((at.y - map.corner().y) / map.pixelSize(), 11.5f, 1e-4f);
   EXPECT_NEAR(at.z, 0.25f, 1e-6f);
+}
+
+// (D3) Check a map of one pixel, and that of a single leaf edge-on, which has an area of 0 to the light: they count
+// what the lines of their pixels meet, and points on the rim, beside the map and far away are asked without harm.
+TEST(D3_DeepOpacityMap, OfOnePixelAndOfALeafEdgeOn) {
+  TreeMesh edge_on;
+  edge_on.vertices = {{0.f, 1.f, 0.f}, {0.f, 3.f, 0.f}, {0.f, 2.f, 1.f}};
+  edge_on.leaf_triangles = {{0, 1, 2}};
+  finish(edge_on, "edge-on");
+  const auto total = [](DeepOpacityMap::Counts counts) { return counts.before + counts.beyond; };
+  for (const int resolution : {1, 3, 64}) {
+    const DeepOpacityMap map(edge_on, kDown, resolution);
+    EXPECT_GT(map.pixelSize(), 0.f);
+    EXPECT_TRUE(map.crossings().empty());
+    EXPECT_EQ(map.first().size(), static_cast<std::size_t>(map.size().x * map.size().y) + 1);
+    const LeafDepths depths = leafDepths(edge_on, map, {});
+    EXPECT_EQ(depths.depth[0], 0.f);
+    EXPECT_EQ(depths.thickness[0], 1.f);
+  }
+
+  const DeepOpacityMap pixel(stack({3.f, 1.f, 2.f}), kDown, 1);
+  ASSERT_EQ(pixel.size(), glm::ivec2(1));
+  EXPECT_EQ(total(pixel.counts({0.9f, 0.1f, 2.5f})), 3);
+  EXPECT_EQ(pixel.counts({0.9f, 0.1f, 2.5f}).before, 1);
+
+  constexpr float kFar = 1e30f, kInfinity = std::numeric_limits<float>::infinity();
+  const DeepOpacityMap map(stack({3.f, 1.f, 2.f}), kDown, 8);
+  for (const float beside : {-0.01f, 1.01f, -kFar, kFar, -kInfinity, kInfinity, std::nanf("")}) {
+    EXPECT_EQ(total(map.counts({beside, 0.5f, 0.f})), 0) << beside;
+    EXPECT_EQ(total(map.counts({0.5f, beside, 0.f})), 0) << beside;
+  }
+  for (int i = 0; i <= 8; ++i) {  // on the borders of pixels either neighbour may answer, on the map's rim nobody
+    const int met = total(map.counts({static_cast<float>(i) / 8.f, 0.4f, kFar}));
+    EXPECT_TRUE(met == 3 || ((i == 0 || i == 8) && met == 0)) << i;
+  }
+  EXPECT_EQ(map.counts({0.5f, 0.4f, kFar}).beyond, 3);
+  EXPECT_EQ(map.counts({0.5f, 0.4f, -kFar}).before, 3);
 }
 
 // (D6) Check depth and thickness of a stack, where they are known: n+ = 0, 1, 2 from the top, w = 3 for all.
@@ -156,65 +218,6 @@ TEST(D6_LeafDepths, OfAFoldedLeaf) {
   const LeafDepths depths = leafDepths(mesh, DeepOpacityMap(mesh, kDown, 32), {});
   EXPECT_EQ(depths.depth[0], 0.f);
   EXPECT_EQ(depths.thickness[0], 1.f);
-}
-
-// (D4) Check cell depths at known places: below a stack all leaves lie upward and none downward.
-TEST(D4_CellDepths, OfAStack) {
-  const TreeMesh mesh = stack({0.5f, 0.6f, 0.f, 1.f});
-  const CellGrid cells = cellGrid(mesh, 4);
-  ASSERT_EQ(cells.size, glm::ivec3(4));
-  const std::vector<Direction> axes{{0.f, 0.f, 1.f}};
-  const auto maps = deepOpacityMaps(mesh, axes, 64);
-  const auto depths = cellDepths(cells, maps, {});
-  const auto depth = [&](int z, std::size_t j) {
-    return depths[static_cast<std::size_t>((z * 4 + 1) * 4 + 1) * 2 + j];
-  };
-  EXPECT_EQ(depth(3, 0), 1.f);  // between 0.75 and 1: the square at 1 above, three below
-  EXPECT_EQ(depth(3, 1), 3.f);
-  EXPECT_EQ(depth(0, 0), 3.f);
-  EXPECT_EQ(depth(0, 1), 1.f);
-  // A neighbour exactly above adds its four.
-  const std::vector<glm::vec3> above{{0.f, 0.f, 10.f}};
-  EXPECT_EQ(cellDepths(cells, maps, above)[static_cast<std::size_t>((3 * 4 + 1) * 4 + 1) * 2], 5.f);
-}
-
-// (D5) Check the two ends of the G-factor: deep in the middle of a crown repeated without gaps it approaches 1; for a
-// lone column it is lower everywhere, and always in [0, 1].
-TEST(D5_CellCompensation, IsHighInAStandAndLowerForALoneTree) {
-  const RandomLayer layer{.size = {1.f, 1.f}, .height = 1.f, .leaf_side = 0.05f, .leaf_area_index = 4.f};
-  const TreeMesh mesh = randomLayer(layer, 5);
-  const std::vector<Direction> directions = spreadAxes(11);
-  const auto maps = deepOpacityMaps(mesh, directions, 128);
-  const DeepOpacityMap light(mesh, kDown, 128);
-  const CellGrid cells = cellGrid(mesh, 8);
-  const auto mean = [&](std::span<const glm::vec3> neighbours) {
-    const auto depths = cellDepths(cells, maps, neighbours);
-    const auto g = cellCompensation(cells, maps, depths, light, neighbours);
-    for (const float value : g) {
-      EXPECT_GE(value, 0.f);
-      EXPECT_LE(value, 1.f);
-    }
-    return std::accumulate(g.begin(), g.end(), 0.) / static_cast<double>(g.size());
-  };
-  const double alone = mean({});
-  const double in_stand =
-      mean(neighbourDisplacements({.trees = {Placement{}}, .period = layer.size}, leafBounds(mesh), 0));
-  // Where chance makes a path meet fewer leaves than the slab's mean, G falls below 1, and nowhere does it rise above:
-  // the loss is one-sided, .07 for this layer.
-  EXPECT_GT(in_stand, 0.9);
-  EXPECT_LT(alone, 0.8);
-}
-
-// Check interpolation: exact for a linear function between cell centres, and clamped outside.
-TEST(CellGrid, InterpolatesLinearly) {
-  const CellGrid cells = cellGrid(stack({0.f, 1.f}), 5);
-  std::vector<float> values;
-  for (std::size_t cell = 0; cell < cells.count(); ++cell) {
-    const glm::vec3 centre = cells.lowCorner(cell) + 0.5f * cells.cell_size;
-    values.push_back(1.f + 2.f * centre.x - centre.y + 3.f * centre.z);
-  }
-  EXPECT_NEAR(interpolate(cells, values, {0.41f, 0.37f, 0.77f}), 1.f + 0.82f - 0.37f + 2.31f, 1e-5f);
-  EXPECT_NEAR(interpolate(cells, values, {-9.f, -9.f, -9.f}), interpolate(cells, values, {0.1f, 0.1f, 0.1f}), 1e-5f);
 }
 
 }  // namespace

@@ -126,21 +126,24 @@ TEST_F(SceneFile, KnowsBuiltinScenes) {
 TEST_F(SceneFile, StandsOfSeveralTreesShareTheirLight) {
   Scene scene = readScene("slab");
   scene.stand = Stand{};
-  const GeometryEffort effort{.light_resolution = 64, .sample_resolution = 64, .cells = 6};
+  StandGeometry stand({.light_resolution = 64, .sample_resolution = 64, .cells = 6});
+  const auto updated = [&]() -> const std::vector<std::vector<float>>& {
+    stand.update(scene, Model::sppg);
+    return stand.compensation();
+  };
   const auto mean = [](const std::vector<float>& g) {
     double sum = 0.;
     for (const float value : g) sum += double{value};
     return sum / static_cast<double>(g.size());
   };
-  const double lone = mean(standGeometry(scene, effort).compensation[0]);
+  const double lone = mean(updated()[0]);
   scene.stand.trees = {{.position = glm::vec3(0.f)}, {.position = glm::vec3(1000.f, 0.f, 0.f)}};
-  const StandGeometry apart = standGeometry(scene, effort);
-  ASSERT_EQ(apart.compensation.size(), 2u);
-  EXPECT_DOUBLE_EQ(mean(apart.compensation[0]), lone);
+  ASSERT_EQ(updated().size(), 2u);
+  EXPECT_DOUBLE_EQ(mean(updated()[0]), lone);
   scene.stand.trees[1].position.x = 2.f;
-  EXPECT_GT(mean(standGeometry(scene, effort).compensation[0]), lone);
+  EXPECT_GT(mean(updated()[0]), lone);
   scene.stand.trees[1].rotation = 0.1f;
-  EXPECT_THROW(standGeometry(scene, effort), InvalidInput);
+  EXPECT_THROW(updated(), InvalidInput);
 }
 
 }  // namespace

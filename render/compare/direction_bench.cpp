@@ -10,8 +10,7 @@
 #include <numbers>
 
 #include "core/random.hpp"
-#include "grid/instance_cells.hpp"
-#include "grid/neighbours.hpp"
+#include "grid/foliage_stand.hpp"
 #include "render/compare/log_plot.hpp"
 #include "render/stand_geometry.hpp"
 
@@ -20,7 +19,6 @@ namespace {
 
 constexpr std::array kCounts{8, 16, 22, 32, 48, 64, 96, 192};
 constexpr int kReference = 1024, kTurns = 4;
-constexpr int kResolution = 128;  // pixels of the maps: their error is in the reference alike
 
 // A turn of the sphere, all alike probable (Shoemake 1992).
 glm::quat randomTurn(Random& random) {
@@ -31,35 +29,30 @@ glm::quat randomTurn(Random& random) {
   return {high * std::cos(b), low * std::sin(a), low * std::cos(a), high * std::sin(b)};
 }
 
-// The cells of a scene's first tree, and their G for any axes.
-class Compensated {
- public:
-  explicit Compensated(const Scene& scene)
-      : mesh_(*scene.tree),
-        cells_(cellGrid(mesh_, GeometryEffort{}.cells)),
-        light_(mesh_, scene.sun(), GeometryEffort{}.light_resolution),
-        neighbours_(neighbourDisplacements(scene.stand, cells_.leaves, 0)) {}
-
-  std::vector<float> by(const std::vector<Direction>& axes) const {
-    const std::vector<DeepOpacityMap> maps = deepOpacityMaps(mesh_, axes, kResolution);
-    return cellCompensation(cells_, maps, cellDepths(cells_, maps, neighbours_), light_, neighbours_);
-  }
-  const std::vector<bool>& active() const { return cells_.active; }
-
- private:
-  const TreeMesh& mesh_;
-  CellGrid cells_;
-  DeepOpacityMap light_;
-  std::vector<glm::vec3> neighbours_;
-};
+// G of the active cells of a scene's first tree, for any axes.
+std::vector<float> compensationBy(const Scene& scene, const std::vector<Direction>& axes) {
+  const GeometryEffort effort;
+  FoliageStand stand({.axes = axes,
+                      .sample_resolution = effort.sample_resolution,
+                      .light_resolution = effort.light_resolution,
+                      .cells = effort.cells});
+  stand.addPrototype(scene.tree);
+  for (const Placement& tree : scene.stand.trees) stand.add(0, tree.position);
+  stand.setPeriod(scene.stand.period);
+  const Direction sun = scene.sun();
+  stand.setLights(std::span(&sun, 1));
+  const std::size_t first = 0;
+  stand.prepareCompensation(std::span(&first, 1));
+  const std::span<const float> found = stand.compensation(first, 0);
+  return {found.begin(), found.end()};
+}
 
 }  // namespace
 
 std::vector<DirectionBenchPoint> benchDirections(const Scene& scene, std::uint64_t seed, const Progress& progress) {
   requireModelled(scene);
   using Clock = std::chrono::steady_clock;
-  const Compensated tree(scene);
-  const std::vector<float> exact = tree.by(spreadAxes(kReference / 2));
+  const std::vector<float> exact = compensationBy(scene, spreadAxes(kReference / 2));
 
   double work = kReference, done = kReference;
   for (const int count : kCounts) work += 2. * kTurns * count;
@@ -76,10 +69,9 @@ std::vector<DirectionBenchPoint> benchDirections(const Scene& scene, std::uint64
         const glm::quat turn = randomTurn(random);
         for (Direction& axis : axes) axis = glm::normalize((spread ? turn : randomTurn(random)) * axis);
         const auto start = Clock::now();
-        const std::vector<float> found = tree.by(axes);
+        const std::vector<float> found = compensationBy(scene, axes);
         point.seconds += std::chrono::duration<double>(Clock::now() - start).count() / kTurns;
         for (std::size_t i = 0; i < found.size(); ++i) {
-          if (!tree.active()[i]) continue;
           const double error = double{found[i]} - double{exact[i]};
           squares += error * error;
           point.largest_error = std::max(point.largest_error, std::abs(error));

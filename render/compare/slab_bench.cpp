@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <stdexcept>
-#include <thread>
 
 #include "render/compare/log_plot.hpp"
+#include "render/compare/machine_name.hpp"
 #include "render/compare/slab_contestants.hpp"
 
 namespace sunfleck {
@@ -22,17 +21,6 @@ using Answer = SlabContestant::Answer;
 constexpr int kReferenceStreams = 128;
 constexpr int kRounds = 15;
 constexpr double kTurnSeconds = 1e-3;  // far above the clock's grain
-
-std::string machineName() {
-  std::ifstream about("/proc/cpuinfo");
-  std::string name = "unknown processor";
-  for (std::string line; std::getline(about, line);)
-    if (line.starts_with("model name")) {
-      name = line.substr(std::min(line.size(), line.find(':') + 2));
-      break;
-    }
-  return fmt::format("{}, {} threads", name, std::thread::hardware_concurrency());
-}
 
 void addErrors(const SlabCourse& course, const Answer& found, const Answer& exact, SlabBenchRow& row) {
   double deviation = 0., size = 0.;

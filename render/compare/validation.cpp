@@ -79,8 +79,9 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
     const auto start = std::chrono::steady_clock::now();
     of_model.irradiance = leafIrradiance(model, geometry, result.optics());
     of_model.shade_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    of_model.prepare_seconds = stand.light_seconds + geometry.depth_seconds +
-                               (model == Model::sppg ? stand.compensation_seconds + geometry.compensation_seconds : 0.);
+    of_model.prepare_seconds =
+        stand.lightSeconds() + geometry.depth_seconds +
+        (model == Model::sppg ? stand.compensationSeconds() + geometry.compensation_seconds : 0.);
     of_model.errors = modelErrors(of_model.irradiance, result.reference.leaf_irradiance, result.categories);
   }
   return result;

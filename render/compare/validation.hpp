@@ -50,7 +50,7 @@ std::string labelOf(Model model);        // "SS", "SPP", "SPPG"
 // of which the models know nothing.
 void requireValidatable(const Scene& scene, int band);
 
-// `stand` is standGeometry() of the scene. Throws InvalidInput as requireValidatable() does.
+// `stand` is up to date for the scene, with G. Throws InvalidInput as requireValidatable() does.
 Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
                     const Progress& progress = {});
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/image.hpp"
+#include "grid/cell_grid.hpp"
 #include "grid/deep_opacity_map.hpp"
-#include "grid/instance_cells.hpp"
 #include "render/model.hpp"
 #include "render/scene.hpp"
 

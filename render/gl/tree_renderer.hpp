@@ -12,7 +12,7 @@
 
 namespace sunfleck::gl {
 
-// G per cell for each tree of the stand; all trees have the prototype's cells (grid/instance_cells.hpp).
+// G per cell for each tree of the stand; all trees have the prototype's cells (grid/cell_grid.hpp).
 struct CompensationCells {
   glm::vec3 low{0.f};     // corner of cell (0, 0, 0) in the prototype's frame [m]
   float cell_size = 1.f;  // [m], > 0

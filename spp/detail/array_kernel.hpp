@@ -29,7 +29,14 @@ struct ViewNumbers {
   Weights seen;
 };
 
+// Of `count` sample directions: cosines, and a row of distances to the edge for each, as many as there are places.
+struct Edges {
+  std::size_t count;
+  const float *cosines, *distances;
+};
+
 struct ArrayKernel {
+  void (*compensation)(const Places&, const Edges&, float mu0, float* compensation);
   void (*sppPowers)(const Places&, float mu0, float albedo, float forward_share, float* down, float* up);
   void (*sppRadiance)(const Places&, float mu0, float albedo, float forward_share, float* down, float* up);
   void (*streamPowers)(const Places&, const StreamNumbers&, const Weights&, float* down, float* up);

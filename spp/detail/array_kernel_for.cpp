@@ -5,6 +5,7 @@
 namespace sunfleck::spp::SUNFLECK_ISA {
 namespace {
 
+using detail::Edges;
 using detail::Places;
 using detail::StreamNumbers;
 using detail::ViewNumbers;
@@ -72,6 +73,16 @@ void sppRadiance(const Places& places, float mu0, float albedo, float forward_sh
     const auto radiance = Formulas::sppDiffuseRadiance(powers, direct);
     store(radiance.down, down + first, lanes);
     store(radiance.up, up + first, lanes);
+  });
+}
+
+void compensation(const Places& places, const Edges& edges, float mu0, float* compensation) {
+  forBlocks(places, [&](Lanes depth, Lanes thickness, std::size_t first, std::size_t lanes) {
+    Lanes lost = 0.f;
+    for (std::size_t j = 0; j < edges.count; ++j)
+      lost += StreamFormulas<Lanes>::shareBeyondEdge(
+          edges.cosines[j], loaded(edges.distances + j * places.count + first, lanes), depth, thickness, mu0);
+    store(min(max(1.f - lost / static_cast<float>(edges.count), 0.f), 1.f), compensation + first, lanes);
   });
 }
 
@@ -147,7 +158,8 @@ void refinedRadiance(const Places& places, const StreamNumbers& numbers, const V
 }  // namespace
 
 extern const detail::ArrayKernel the_kernel;
-constinit const detail::ArrayKernel the_kernel{.sppPowers = sppPowers,
+constinit const detail::ArrayKernel the_kernel{.compensation = compensation,
+                                               .sppPowers = sppPowers,
                                                .sppRadiance = sppRadiance,
                                                .streamPowers = streamPowers,
                                                .refinedRadiance = refinedRadiance};

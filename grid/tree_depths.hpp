@@ -1,0 +1,65 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "grid/cell_grid.hpp"
+#include "grid/deep_opacity_map.hpp"
+#include "grid/optical_depth.hpp"
+
+namespace sunfleck {
+
+// (D4) What the cells of a stand read of one tree along one axis, for light that travels along it or against it.
+class TreeDepths {
+ public:
+  // Of the tree that `map` and `grid` were made of, along the map's axis.
+  //   seen_from  sides of the cells that this tree will be seen from [m]; 0: from none
+  TreeDepths(const CellGrid& grid, const DeepOpacityMap& map, std::span<const float> seen_from);
+
+  const Axes& axes() const { return axes_; }
+
+  // Mean number of the tree's leaf crossings from each of its own cells outward along the axis, and against it: over
+  // the cell's volume, sampled by the map's lines through it, exact along each. In steps; for all cells, active or not.
+  std::span<const FixedDepth> beyond() const { return beyond_; }
+  std::span<const FixedDepth> before() const { return before_; }
+  struct Depths {
+    std::uint32_t beyond, before;  // [step]
+  };
+  // The same at a point among the tree's cells, interpolated between their centres.
+  Depths within(const CellGrid& grid, glm::vec3 point) const;
+
+  // Adds what this tree, displaced by `displacement` [m] from the tree of `receiver`, puts before the receiver's active
+  // cells, `times` times: -1 takes it away again. `receiver` must have the same axes.
+  //   grid, receiver_grid  of this tree and of the receiver
+  //   receiver_cells       which of `seen_from` the receiver's cells are
+  //   beyond, before       sums over trees for the receiver's active cells [step]
+  void addTo(const CellGrid& grid, const TreeDepths& receiver, const CellGrid& receiver_grid,
+             std::size_t receiver_cells, const glm::vec3& displacement, std::int32_t times,
+             std::span<std::int32_t> beyond, std::span<std::int32_t> before) const;
+
+  std::size_t memoryBytes() const;
+
+ private:
+  // Number of leaf crossings on the whole line through a point beside the tree, the mean over the lines through a cell
+  // around the point.
+  struct Picture {
+    glm::vec2 corner{0.f};              // (right, up) of the centre of pixel (0, 0) [m]
+    float per_pixel = 0.f;              // [1/m]
+    glm::vec2 last{0.f};                // column and row of the last pixel
+    std::size_t width = 0;              // [pixel]
+    std::vector<FixedDepth> thickness;  // at the pixels' centres; the outermost are 0
+
+    // In steps, at (right, up) [m].
+    std::uint32_t at(glm::vec2 place) const;
+  };
+  void walkLines(const CellGrid& grid, const DeepOpacityMap& map);
+
+  Axes axes_;
+  std::vector<FixedDepth> beyond_, before_;
+  std::vector<Picture> pictures_;               // as seen from each kind of cells
+  std::vector<glm::vec2> cells_;                // (right, up) of the centres of the tree's active cells [m]
+  glm::vec2 cells_low_{0.f}, cells_high_{0.f};  // their box
+};
+
+}  // namespace sunfleck
