@@ -166,7 +166,9 @@ std::string legend(const LogPanel& panel, const Box& place) {
 }
 
 std::string drawn(const LogPanel& panel) {
-  const LogAxis x = axisOver(panel, &LogPoint::x, kLeft, kRight), y = axisOver(panel, &LogPoint::y, kBottom, kTop);
+  const LogAxis x = axisOver(panel, &LogPoint::x, kLeft, kRight);
+  LogAxis y = axisOver(panel, &LogPoint::y, kBottom, kTop);
+  if (panel.rising) --y.low;
   std::size_t longest = 0;
   for (const LogCurve& curve : panel.curves) longest = std::max(longest, curve.label.size());
   const Box key{kLeft + 6., kBottom - 8. - kLegendLine * static_cast<double>(panel.curves.size()),

@@ -183,7 +183,8 @@ std::string standBenchCsv(const StandBench& bench) {
 }
 
 std::string standBenchPlot(const StandBench& bench) {
-  LogPanel panel{.title = "Stands of all species", .x_title = "trees", .y_title = "wall time [s]", .curves = {}};
+  LogPanel panel{
+      .title = "Stands of all species", .x_title = "trees", .y_title = "wall time [s]", .rising = true, .curves = {}};
   struct Shown {
     const char *label, *colour;
     double StandBenchRow::*time;
