@@ -115,6 +115,19 @@ class FoliageStand {
     std::size_t instance;
     std::optional<glm::vec3> from, to;
   };
+  // What a changed tree adds to an instance's sums along an axis, or takes from them.
+  struct Part {
+    std::size_t instance, axis, source;
+    glm::vec3 displacement;  // of the source from the instance [m]
+    std::int32_t times;
+  };
+  struct Adjusted {
+    std::size_t instance = 0;
+    std::vector<char> by_samples;                         // cells whose depths changed along any sample axis
+    std::array<std::vector<char>, kMostLights> by_light;  // along each light
+    std::vector<std::size_t> lost;                        // axes whose sums cannot be told from the stored ones
+    std::size_t sample_rows = 0, light_rows = 0;
+  };
 
   std::size_t axisCount() const { return effort_.axes.size() + kMostLights; }
   std::size_t member(std::size_t owner, std::size_t light) const { return owner * kMostLights + light; }
@@ -127,9 +140,13 @@ class FoliageStand {
   std::vector<std::size_t> standingPrototypes() const;  // those of which there is an instance
   void prepareDepths(std::span<const std::size_t> instances, bool with_lights, const Progress& progress);
   void applyChanges(std::span<const std::size_t> standing);
-  void adjust(std::size_t instance, std::size_t axis, std::span<const std::int32_t> beyond,
-              std::span<const std::int32_t> before, std::vector<char>& changed);
+  std::vector<Part> changedParts(std::span<const std::size_t> standing);
+  void adjustSums(const std::vector<Part>& parts);
+  Adjusted adjust(std::span<const Part> parts);
+  void passOn(const Adjusted& adjusted);
   void touchDepths();
+  void touchDepths(std::size_t instance, std::size_t axis);
+  void requireMemory(std::span<const std::size_t> instances, std::span<const std::size_t> standing) const;
   void makeDepths(std::size_t instance, std::size_t axis);
   void makeCompensation(std::size_t instance, std::size_t light);
   void makeSkyLight(std::size_t instance);

@@ -1,8 +1,15 @@
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <sstream>
 #include <utility>
 
+#include "core/require.hpp"
+#include "core/stand.hpp"
+#include "grid/detail/available_memory.hpp"
 #include "grid/foliage_stand.hpp"
+#include "grid/neighbours.hpp"
 #include "spp/compensation.hpp"
 #include "spp/slab.hpp"
 #include "spp/slab_arrays.hpp"
@@ -26,6 +33,7 @@ const CellGrid& FoliageStand::cells(std::size_t prototype) {
 
 const DeepOpacityMap& FoliageStand::lightMap(std::size_t prototype, std::size_t light) {
   cells(prototype);  // else it would be up to date before what it follows, and not notice the next change
+  assert(light < lights_.size());
   const std::size_t one = member(prototype, light);
   graph_.bring(light_maps_, std::span(&one, 1), [&](std::size_t) {
     prototypes_[prototype].light_maps[light].emplace(*prototypes_[prototype].mesh, lights_[light],
@@ -34,17 +42,44 @@ const DeepOpacityMap& FoliageStand::lightMap(std::size_t prototype, std::size_t 
   return *prototypes_[prototype].light_maps[light];
 }
 
+// What the depths will take, about: rows of sums for each instance, what is known of each kind along each axis as seen
+// from all, and the index with its copies.
+void FoliageStand::requireMemory(std::span<const std::size_t> instances, std::span<const std::size_t> standing) const {
+  const double axes = static_cast<double>(effort_.axes.size() + lights_.size());
+  double bytes = 0., kinds = 0.;
+  glm::ivec2 around(0);
+  for (const std::size_t p : standing) {
+    const CellGrid& cells = prototypes_[p].cells;
+    const double side = static_cast<double>(std::max({cells.size.x, cells.size.y, cells.size.z}));
+    bytes += axes * 12. * static_cast<double>(cells.count());
+    kinds += axes * std::pow(7. * side + 10., 2.) * sizeof(FixedDepth);  // a picture, seen obliquely
+    around = glm::max(around, periodsAround({.period = period_}, cells.leaves));
+  }
+  bytes += kinds * static_cast<double>(prototypes_.size());
+  for (const std::size_t i : instances)
+    bytes += (2. * axes * sizeof(FixedDepth) + 32.) *
+             static_cast<double>(prototypes_[placed_[i].prototype].cells.active.size());
+  bytes += 64. * static_cast<double>(placed_.size()) * (2. * around.x + 1.) * (2. * around.y + 1.);
+  if (const double most = availableMemory(); bytes > most) {
+    std::ostringstream text;
+    text.precision(3);
+    text << "cells, sample directions and trees: would take " << bytes * 1e-9 << " GB: must be at most the "
+         << most * 1e-9 << " GB there are";
+    throw InvalidInput(text.str());
+  }
+}
+
 // Prototypes first, then what their copies need of them.
 void FoliageStand::prepareDepths(std::span<const std::size_t> instances, bool with_lights, const Progress& progress) {
   const std::size_t axes = effort_.axes.size();
   const std::vector<std::size_t> standing = standingPrototypes();
-  bool seen_anew = false;
-  for (const std::size_t p : standing)
-    seen_anew |= std::exchange(seen_from_[p], cells(p).cell_size) != prototypes_[p].cells.cell_size;
-  if (seen_anew) {
+  for (const std::size_t p : standing) {
+    const float cell_size = cells(p).cell_size;
+    if (std::exchange(seen_from_[p], cell_size) == cell_size) continue;
     graph_.touchAll(sample_axes_);
     graph_.touchAll(light_axes_);
   }
+  requireMemory(instances, standing);
   std::vector<std::size_t> members;
   for (const std::size_t p : standing)
     for (std::size_t axis = 0; axis < axes; ++axis) members.push_back(p * axes + axis);
@@ -73,23 +108,26 @@ void FoliageStand::prepareDepths(std::span<const std::size_t> instances, bool wi
   graph_.bring(
       sample_depths_, members, [&](std::size_t i) { makeDepths(i / axes, i % axes); }, progress);
   if (with_lights)
-    graph_.bring(light_depths_, ofLights(instances),
-                 [&](std::size_t i) { makeDepths(i / kMostLights, axes + i % kMostLights); });
+    graph_.bring(
+        light_depths_, ofLights(instances), [&](std::size_t i) { makeDepths(i / kMostLights, axes + i % kMostLights); },
+        progress);
 }
 
 void FoliageStand::prepareCompensation(std::span<const std::size_t> instances, const Progress& progress) {
   const std::vector<std::size_t> those = present(instances);
   prepareDepths(those, true, progress);
   unlit_ = 0;
-  graph_.bring(compensation_, ofLights(those),
-               [&](std::size_t i) { makeCompensation(i / kMostLights, i % kMostLights); });
+  graph_.bring(
+      compensation_, ofLights(those), [&](std::size_t i) { makeCompensation(i / kMostLights, i % kMostLights); },
+      progress);
   graph_.cost(compensation_).skipped += unlit_;
 }
 
 void FoliageStand::prepareSkyLight(std::span<const std::size_t> instances, const Progress& progress) {
   const std::vector<std::size_t> those = present(instances);
   prepareDepths(those, false, progress);
-  graph_.bring(sky_light_, those, [&](std::size_t i) { makeSkyLight(i); });
+  graph_.bring(
+      sky_light_, those, [&](std::size_t i) { makeSkyLight(i); }, progress);
 }
 
 // (D4) The tree itself and all that its cells meet along the axis.

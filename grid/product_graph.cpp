@@ -54,6 +54,8 @@ void ProductGraph::bring(Product product, std::span<const std::size_t> members,
   std::vector<std::size_t> due;
   for (const std::size_t member : members)
     if (node.stale[member]) due.push_back(member);
+  std::sort(due.begin(), due.end());
+  due.erase(std::unique(due.begin(), due.end()), due.end());
   node.cost.reused += members.size() - due.size();
   if (due.empty()) return;
   const Stopwatch watch(node.cost.seconds);

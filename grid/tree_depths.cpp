@@ -91,9 +91,8 @@ class SummedArea {
 // Values at the corners of squares, interpolated between them; 0 beside them.
 class Lattice {
  public:
-  Lattice(glm::ivec2 size)
+  explicit Lattice(glm::ivec2 size)
       : size_(size), values_(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y)) {}
-  glm::ivec2 size() const { return size_; }
   float& operator()(int x, int y) { return values_[index(x, y)]; }
   float at(glm::vec2 place) const {
     const glm::ivec2 low(glm::floor(place));
@@ -166,7 +165,7 @@ TreeDepths::TreeDepths(const CellGrid& grid, const DeepOpacityMap& map, std::spa
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x)
         picture.thickness.push_back(fixedDepth(depthSteps(lattice(kFiner * x, kFiner * y))));
-  };
+  }
   cells_.reserve(grid.active.size());
   Bounds box;
   for (const std::uint32_t cell : grid.active) {
@@ -213,6 +212,12 @@ void TreeDepths::walkLines(const CellGrid& grid, const DeepOpacityMap& map) {
   beyond_.resize(grid.count());
   before_.resize(grid.count());
   for (std::size_t cell = 0; cell < grid.count(); ++cell) {
+    if (sums[cell].length == 0.f) {  // the map's lines are too coarse for it: the nearest to its centre
+      const DeepOpacityMap::Counts counts = map.counts(grid.centre(cell));
+      beyond_[cell] = fixedDepth(depthSteps(static_cast<float>(counts.beyond)));
+      before_[cell] = fixedDepth(depthSteps(static_cast<float>(counts.before)));
+      continue;
+    }
     const float length = std::max(sums[cell].length, 1e-30f);
     beyond_[cell] = fixedDepth(depthSteps(std::max(sums[cell].beyond, 0.f) / length));
     before_[cell] = fixedDepth(depthSteps(sums[cell].before / length));
@@ -251,6 +256,8 @@ TreeDepths::Depths TreeDepths::within(const CellGrid& grid, glm::vec3 point) con
 }
 
 // A point outside the tree's box sees it whole, on that side to which the box lies: across any face that parts the two.
+// Across a face that the axis runs along, no line through the point meets the box; what a cell around the point sees of
+// the tree lies as the box's centre does.
 void TreeDepths::addTo(const CellGrid& grid, const TreeDepths& receiver, const CellGrid& receiver_grid,
                        std::size_t receiver_cells, const glm::vec3& displacement, std::int32_t times,
                        std::span<std::int32_t> beyond, std::span<std::int32_t> before) const {
@@ -262,11 +269,16 @@ void TreeDepths::addTo(const CellGrid& grid, const TreeDepths& receiver, const C
     return;
   // Side of a parting face: 1 where the tree lies along the axis from the points, -1 against it, 0 without such a face.
   const auto side = [&](const glm::vec3& least, const glm::vec3& greatest) {
+    bool beside = false;
     for (int axis = 0; axis < 3; ++axis) {
-      if (greatest[axis] <= grid.leaves.low[axis] + displacement[axis]) return axes_.along[axis] > 0.f ? 1 : -1;
-      if (least[axis] >= grid.leaves.high[axis] + displacement[axis]) return axes_.along[axis] < 0.f ? 1 : -1;
+      const bool above = greatest[axis] <= grid.leaves.low[axis] + displacement[axis];
+      const bool below = least[axis] >= grid.leaves.high[axis] + displacement[axis];
+      if (!above && !below) continue;
+      if (std::abs(axes_.along[axis]) > 1e-6f) return above == (axes_.along[axis] > 0.f) ? 1 : -1;
+      beside = true;
     }
-    return 0;
+    if (!beside || least != greatest) return 0;
+    return glm::dot(grid.leaves.centre() + displacement - least, axes_.along) > 0.f ? 1 : -1;
   };
   const glm::vec3 half_cell(0.5f * receiver_grid.cell_size);
   const int common_side = side(receiver_grid.box().low + half_cell, receiver_grid.box().high - half_cell);

@@ -103,7 +103,9 @@ Extents extentsOf(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles
 }
 
 void validate(const TreeMesh& mesh, const Extents& leaves, const Extents& wood, double cell_size) {
-  const auto check = [&](bool ok, const char* rule) { require(ok, "cell size [m]", cell_size, rule); };
+  const auto check = [&](bool ok, const char* rule) {
+    require(ok, "cell size [m]", static_cast<float>(cell_size), rule);
+  };
   check(cell_size >= 1e-6 && cell_size <= 1e6, "from 1e-6 to 1e6");
   if (leafBounds(mesh).empty()) throw InvalidInput("the tree has no leaves: at least one is needed for a density");
   const Bounds box = bounds(mesh);
@@ -272,7 +274,7 @@ void requireMemory(double bytes, double cell_size) {
   rule.precision(3);
   rule << "so large that the grids take less memory: they would take " << bytes * 1e-9 << " GB, of " << most * 1e-9
        << " GB there are";
-  require(false, "cell size [m]", cell_size, rule.str());
+  require(false, "cell size [m]", static_cast<float>(cell_size), rule.str());
 }
 
 DensityGrid DensityGrid::voxelize(const TreeMesh& mesh, float cell_size, const Progress& progress) {

@@ -234,6 +234,7 @@ class Placed {
 };
 
 void validate(const Stand& stand) {
+  require(!stand.trees.empty(), "number of trees", stand.trees.size(), "at least 1");
   for (std::size_t i = 0; i < stand.trees.size(); ++i) {
     const auto [position, rotation] = stand.trees[i];
     const std::string name = "tree " + std::to_string(i) + " ";
@@ -256,7 +257,7 @@ openvdb::CoordBBox boxOf(const DensityTrees& trees) {
 }
 
 void requireCells(bool ok, double cell_size, const char* rule) {
-  require(ok, "cell size [m]", cell_size, rule);
+  require(ok, "cell size [m]", static_cast<float>(cell_size), rule);
 }
 
 // All copies of the trees, with a period also those of the neighbouring periods that reach into this one; and the box

@@ -29,8 +29,10 @@ void StandGeometry::update(const Scene& scene, Model model, std::optional<std::s
   requireModelled(scene);
   if (!tree_)
     stand_->addPrototype(scene.tree);
-  else if (tree_ != scene.tree)
+  else if (tree_ != scene.tree) {
+    stand_->setPeriod(std::nullopt);  // the former scene's may not suit the tree
     stand_->replacePrototype(0, scene.tree);
+  }
   tree_ = scene.tree;
   stand_->setPeriod(scene.stand.period);
   const std::size_t before = stand_->instances(), now = scene.stand.trees.size();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -169,6 +170,26 @@ TEST(D4_FoliageStand, LightMeetsAKindThatCameUnlit) {
   stand.prepareCompensation(first);
   const CellGrid& cells = stand.cells(0);
   EXPECT_EQ(depthOf(stand.lightDepths(0, 0)[cells.slot[cells.number({3, 3, 5})]]), 4.f);
+}
+
+// (D4) Check that a tree of a kind that had left the stand, and come and gone again since a third kind came, leaves
+// nothing behind: its kind's pictures are older than the third kind.
+TEST(D4_FoliageStand, ForgetsAKindThatCameAndWent) {
+  const std::vector<std::size_t> first{0};
+  FoliageStand stand(coarse());
+  for (const auto& tree : {crown(100), crown(60, {1.f, 1.f, 1.f})}) stand.addPrototype(tree);
+  for (int i = 0; i < 12; ++i) stand.add(0, {1.5f * static_cast<float>(i), 0.f, 0.f});
+  const std::size_t left = stand.add(1, {2.f, 1.f, 0.f});
+  stand.prepareSkyLight(stand.allInstances());
+  stand.remove(left);
+  stand.prepareSkyLight(stand.allInstances());
+  stand.addPrototype(crown(80, {0.7f, 0.7f, 0.7f}));
+  stand.add(2, {3.f, 1.f, 0.f});
+  stand.prepareSkyLight(stand.allInstances());
+  const std::vector<FixedDepth> before(stand.depths(0, 0).begin(), stand.depths(0, 0).end());
+  stand.remove(stand.add(1, {1.f, 1.f, 0.f}));
+  stand.prepareSkyLight(first);
+  EXPECT_TRUE(std::ranges::equal(stand.depths(0, 0), before));
 }
 
 // Check that a map made before the cells is made anew with the tree.

@@ -22,7 +22,7 @@ struct ModelResult {
   Model model = Model::ss;
   std::vector<float> irradiance;  // of each leaf [1]
   ModelErrors errors;
-  double prepare_seconds = 0.;  // once per placement of trees and light
+  double prepare_seconds = 0.;  // per placement of trees and light: what the one before has not left
   double shade_seconds = 0.;    // all leaves
 };
 
