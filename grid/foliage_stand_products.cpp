@@ -83,11 +83,14 @@ void FoliageStand::prepareDepths(std::span<const std::size_t> instances, bool wi
   std::vector<std::size_t> members;
   for (const std::size_t p : standing)
     for (std::size_t axis = 0; axis < axes; ++axis) members.push_back(p * axes + axis);
-  graph_.bring(sample_axes_, members, [&](std::size_t i) {
-    Prototype& p = prototypes_[i / axes];
-    p.axes[i % axes].emplace(p.cells, DeepOpacityMap(*p.mesh, effort_.axes[i % axes], effort_.sample_resolution, false),
-                             seen_from_);
-  });
+  graph_.bring(
+      sample_axes_, members,
+      [&](std::size_t i) {
+        Prototype& p = prototypes_[i / axes];
+        p.axes[i % axes].emplace(
+            p.cells, DeepOpacityMap(*p.mesh, effort_.axes[i % axes], effort_.sample_resolution, false), seen_from_);
+      },
+      progress);
   if (with_lights) {
     for (const std::size_t p : standing)
       for (std::size_t light = 0; light < lights_.size(); ++light) lightMap(p, light);

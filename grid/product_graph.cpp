@@ -10,7 +10,8 @@
 namespace sunfleck {
 namespace {
 
-constexpr std::size_t kBatches = 64;  // progress is told after each
+// Progress is told after each batch; one of few members would not keep all cores at work.
+constexpr std::size_t kBatches = 64, kFewest = 16;
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -59,7 +60,7 @@ void ProductGraph::bring(Product product, std::span<const std::size_t> members,
   node.cost.reused += members.size() - due.size();
   if (due.empty()) return;
   const Stopwatch watch(node.cost.seconds);
-  const std::size_t batches = progress ? std::min(kBatches, due.size()) : 1;
+  const std::size_t batches = progress ? std::clamp<std::size_t>(due.size() / kFewest, 1, kBatches) : 1;
   for (std::size_t batch = 0; batch < batches; ++batch) {
     const std::size_t begin = due.size() * batch / batches, end = due.size() * (batch + 1) / batches;
     tbb::parallel_for(begin, end, [&](std::size_t i) {
