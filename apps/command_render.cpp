@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "apps/commands.hpp"
 #include "apps/pictures.hpp"
@@ -39,6 +40,7 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   const double prepared = seconds();
   const Image image = modelPicture(scene, stand, model);
   const double shaded = seconds() - prepared;
+  if (interrupted()) throw std::runtime_error("interrupted");  // drawing itself does not hear of it
   writeImage(options.output, image, options.exposure);
   if (run.json) {
     nlohmann::ordered_json result{{"output", options.output}, {"model", options.model},      {"width", image.width},

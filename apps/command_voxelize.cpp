@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 
 #include "apps/commands.hpp"
 #include "apps/scene_options.hpp"
@@ -78,6 +79,7 @@ int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return made;
   }();
+  if (interrupted()) throw std::runtime_error("interrupted");
   if (!options.output.empty()) grid.write(options.output, source);
 
   const double projection = grid.projectedLeafArea({0.f, 0.f, -1.f}) / grid.leafArea();

@@ -9,7 +9,6 @@
 #include <cassert>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <optional>
 
 #include "grid/detail/scan_conversion.hpp"
 
@@ -165,17 +164,6 @@ DeepOpacityMap::Counts DeepOpacityMap::counts(glm::vec3 point, std::uint32_t own
     for (const Crossing& crossing : line)
       if (crossing.leaf == own) --(crossing.depth < at.z ? counts.before : counts.beyond);
   return counts;
-}
-
-std::vector<DeepOpacityMap> deepOpacityMaps(const TreeMesh& mesh, std::span<const Direction> directions,
-                                            int resolution) {
-  std::vector<std::optional<DeepOpacityMap>> made(directions.size());
-  tbb::parallel_for(std::size_t{0}, directions.size(),
-                    [&](std::size_t i) { made[i].emplace(mesh, directions[i], resolution, false); });
-  std::vector<DeepOpacityMap> maps;
-  maps.reserve(made.size());
-  for (auto& map : made) maps.push_back(std::move(*map));
-  return maps;
 }
 
 }  // namespace sunfleck

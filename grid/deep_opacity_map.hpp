@@ -69,8 +69,4 @@ class DeepOpacityMap {
   std::vector<float> wood_depth_;
 };
 
-// The maps of one tree along each direction, without wood, in parallel.
-std::vector<DeepOpacityMap> deepOpacityMaps(const TreeMesh& mesh, std::span<const Direction> directions,
-                                            int resolution);
-
 }  // namespace sunfleck

@@ -100,7 +100,7 @@ std::vector<float> leafProjections(const TreeMesh& mesh, Direction direction) {
 }
 
 LeafDepths leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, std::span<const glm::vec3> neighbours) {
-  std::vector<glm::vec3> displacements = neighboursAlong(neighbours, leafBounds(mesh), light.along(), true);
+  std::vector<glm::vec3> displacements = neighboursAlong(neighbours, leafBounds(mesh), light.along());
   displacements.emplace_back(0.f);
   std::vector<ShiftedTree> trees;
   for (const glm::vec3& t : displacements) trees.emplace_back(light, t);

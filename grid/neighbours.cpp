@@ -10,9 +10,9 @@
 namespace sunfleck {
 namespace {
 
-// Whether the ray from the origin along `direction` meets the box centred at `centre`.
-bool meets(glm::vec3 centre, glm::vec3 half_size, Direction direction, bool both_ways) {
-  float enter = both_ways ? -std::numeric_limits<float>::infinity() : 0.f;
+// Whether the line through the origin along `direction` meets the box centred at `centre`.
+bool meets(glm::vec3 centre, glm::vec3 half_size, Direction direction) {
+  float enter = -std::numeric_limits<float>::infinity();
   float leave = std::numeric_limits<float>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(direction[axis]) < 1e-9f) {
@@ -55,13 +55,13 @@ std::vector<glm::vec3> neighbourDisplacements(const Stand& stand, const Bounds& 
   return displacements;
 }
 
-// Some point of the box reaches the box displaced by t exactly if the ray from the origin meets the box of twice the
-// size about t: their Minkowski difference.
-std::vector<glm::vec3> neighboursAlong(std::span<const glm::vec3> displacements, const Bounds& box, Direction direction,
-                                       bool both_ways) {
+// Some point of the box reaches the box displaced by t exactly if the line through the origin meets the box of twice
+// the size about t: their Minkowski difference.
+std::vector<glm::vec3> neighboursAlong(std::span<const glm::vec3> displacements, const Bounds& box,
+                                       Direction direction) {
   std::vector<glm::vec3> met;
   for (const glm::vec3& t : displacements)
-    if (meets(t, box.size(), direction, both_ways)) met.push_back(t);
+    if (meets(t, box.size(), direction)) met.push_back(t);
   return met;
 }
 

@@ -26,9 +26,9 @@ glm::ivec2 periodsAround(const Stand& stand, const Bounds& box);
 // their copies and its own within periodsAround(). Rotations are not regarded.
 std::vector<glm::vec3> neighbourDisplacements(const Stand& stand, const Bounds& box, std::size_t index);
 
-// Those of the displacements whose instance can be met from somewhere in `box` along `direction`, or against it when
-// `both_ways`. `box` is that of one instance.
-std::vector<glm::vec3> neighboursAlong(std::span<const glm::vec3> displacements, const Bounds& box, Direction direction,
-                                       bool both_ways);
+// Those of the displacements whose instance can be met from somewhere in `box` along `direction` or against it. `box`
+// is that of one instance.
+std::vector<glm::vec3> neighboursAlong(std::span<const glm::vec3> displacements, const Bounds& box,
+                                       Direction direction);
 
 }  // namespace sunfleck

@@ -215,7 +215,7 @@ refuses "mu0 = 1e-50: must be at least 1e-07" slab --model twostream --mu0 1e-50
 printf 'g,omega,thickness,mu0\n0,0.9,1,1e-50\n' >grazing.csv
 refuses "mu0 = 1e-50: must be at least 1e-07" slab --model sppr --batch grazing.csv
 refuses "nosuch" bench directions nosuch -o dirs
-refuses "whole number, 16 to 1e5" bench stand --trees 15 -o dirs
+refuses "whole number, 16 to 50000" bench stand --trees 15 -o dirs
 refuses "must not be empty" bench stand -o ""
 refuses "even" validate cherry --directions 7 -o dirs
 refuses "--frobnicate" tables --frobnicate
