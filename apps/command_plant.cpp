@@ -30,7 +30,7 @@ Crown crownOf(const TreeMesh& mesh) {
   std::size_t covered = 0;
   for (std::size_t pixel = 0; pixel + 1 < overhead.first().size(); ++pixel)
     covered += overhead.first()[pixel + 1] > overhead.first()[pixel];
-  const LeafDepths depths = leafDepths(mesh, overhead, {});
+  const LeafDepths depths = leafDepths(mesh, overhead).front();
   const auto mean = [](const std::vector<float>& v) {
     return std::accumulate(v.begin(), v.end(), 0.) / static_cast<double>(v.size());
   };

@@ -9,55 +9,51 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
+#include <stdexcept>
 
 #include "grid/neighbours.hpp"
+#include "grid/stand_index.hpp"
 
 namespace sunfleck {
 
 namespace {
 
-constexpr int kRows = 16;  // of a map, that are worth a task
+constexpr int kRows = 16;           // of a map, that are worth a task
+constexpr std::size_t kTrees = 16;  // between two calls of the progress
 
 // Sums over the light rays that meet a leaf: whole numbers, so that their order does not matter.
 struct RaySums {
   std::uint64_t before = 0, beyond = 0, rays = 0;
 };
 
-// A tree of the stand in the pixels of the light's map of another.
+// Another tree of the stand in the pixels of the light's map: the rectangle of those in which its crossings may count.
 struct ShiftedTree {
-  glm::ivec2 pixels;  // from a pixel of the map to the one that holds this tree's crossings
-  float depth;        // how much deeper they lie [m]
+  glm::vec3 displacement;  // [m]
+  glm::ivec2 pixels;       // from a pixel of the map to the one that holds this tree's crossings
+  float depth;             // how much deeper they lie [m]
+  glm::ivec2 low, high;    // high is beyond the last
 
-  ShiftedTree(const DeepOpacityMap& light, glm::vec3 displacement) {
+  ShiftedTree(const DeepOpacityMap& light, const glm::vec3& from_leaves) : displacement(from_leaves) {
     const glm::vec3 shift = light.inMap(displacement);
-    pixels = glm::ivec2(glm::floor(0.5f - glm::vec2(shift) / light.pixelSize()));
+    const glm::vec2 size(light.size());  // shifts beyond it need not fit an int
+    pixels = glm::ivec2(glm::clamp(glm::floor(0.5f - glm::vec2(shift) / light.pixelSize()), -size, size));
     depth = shift.z;
+    low = glm::max(glm::ivec2(0), -pixels);
+    high = glm::min(light.size(), light.size() - pixels);
   }
+  bool meets() const { return low.x < high.x && low.y < high.y; }
 };
 
-// Adds the rays through a row of pixels. Trees of the stand: those whose crossings may count, the leaves' own included.
-void addRow(const DeepOpacityMap& light, std::span<const ShiftedTree> trees, int y, std::vector<std::uint32_t>& before,
-            std::vector<RaySums>& sums) {
+// Adds the tree's own crossings on the lines through a row of pixels.
+void addOwnRow(const DeepOpacityMap& light, int y, std::vector<RaySums>& sums) {
   for (int x = 0; x < light.size().x; ++x) {
     const std::span<const Crossing> line = light.crossings(x, y);
-    if (line.empty()) continue;
-    before.assign(line.size(), 0);
-    std::size_t all = 0;
-    for (const ShiftedTree& tree : trees) {
-      const glm::ivec2 pixel = glm::ivec2(x, y) + tree.pixels;
-      if (pixel.x < 0 || pixel.y < 0 || pixel.x >= light.size().x || pixel.y >= light.size().y) continue;
-      const std::span<const Crossing> others = light.crossings(pixel.x, pixel.y);
-      std::uint32_t passed = 0;  // both lines are sorted by depth
-      for (std::size_t i = 0; i < line.size(); ++i) {
-        while (passed < others.size() && others[passed].depth + tree.depth < line[i].depth) ++passed;
-        before[i] += passed;
-      }
-      all += others.size();
-    }
+    std::size_t passed = 0;
     for (std::size_t i = 0; i < line.size(); ++i) {
+      while (line[passed].depth < line[i].depth) ++passed;
       RaySums& leaf = sums[line[i].leaf];
-      leaf.before += before[i];
-      leaf.beyond += all - before[i] - 1;
+      leaf.before += passed;
+      leaf.beyond += line.size() - passed - 1;
       ++leaf.rays;
       for (std::size_t j = 0; j < i; ++j)  // a folded leaf does not stand in its own light
         if (line[j].leaf == line[i].leaf) {
@@ -66,6 +62,88 @@ void addRow(const DeepOpacityMap& light, std::span<const ShiftedTree> trees, int
         }
     }
   }
+}
+
+// Adds the crossings of other trees on them. `met` and `before` are room for work.
+void addOthersRow(const DeepOpacityMap& light, std::span<const ShiftedTree> trees, int y,
+                  std::vector<const ShiftedTree*>& met, std::vector<std::uint32_t>& before,
+                  std::vector<RaySums>& sums) {
+  met.clear();
+  for (const ShiftedTree& tree : trees)
+    if (y >= tree.low.y && y < tree.high.y) met.push_back(&tree);
+  if (met.empty()) return;
+  for (int x = 0; x < light.size().x; ++x) {
+    const std::span<const Crossing> line = light.crossings(x, y);
+    if (line.empty()) continue;
+    before.assign(line.size(), 0);
+    std::size_t all = 0;
+    for (const ShiftedTree* tree : met) {
+      if (x < tree->low.x || x >= tree->high.x) continue;
+      const std::span<const Crossing> others = light.crossings(x + tree->pixels.x, y + tree->pixels.y);
+      std::uint32_t passed = 0;  // both lines are sorted by depth
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        while (passed < others.size() && others[passed].depth + tree->depth < line[i].depth) ++passed;
+        before[i] += passed;
+      }
+      all += others.size();
+    }
+    if (all == 0) continue;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      sums[line[i].leaf].before += before[i];
+      sums[line[i].leaf].beyond += all - before[i];
+    }
+  }
+}
+
+// Sums over the rows of the light's map: add_row(y, sums), in parallel.
+template <typename AddRow>
+std::vector<RaySums> overRows(const DeepOpacityMap& light, std::size_t leaves, const AddRow& add_row) {
+  tbb::enumerable_thread_specific<std::vector<RaySums>> by_thread{std::vector<RaySums>(leaves)};
+  tbb::parallel_for(tbb::blocked_range<int>(0, light.size().y, kRows), [&](const tbb::blocked_range<int>& rows) {
+    std::vector<RaySums>& sums = by_thread.local();
+    for (int y = rows.begin(); y != rows.end(); ++y) add_row(y, sums);
+  });
+  std::vector<RaySums> sums(leaves);
+  for (const std::vector<RaySums>& part : by_thread)
+    for (std::size_t leaf = 0; leaf < sums.size(); ++leaf) {
+      sums[leaf].before += part[leaf].before;
+      sums[leaf].beyond += part[leaf].beyond;
+      sums[leaf].rays += part[leaf].rays;
+    }
+  return sums;
+}
+
+// What the leaves of one tree meet of the others.
+std::vector<RaySums> metOfOthers(const DeepOpacityMap& light, std::span<const ShiftedTree> trees,
+                                 std::span<const RaySums> own, std::span<const glm::vec3> centres) {
+  if (trees.empty()) return std::vector<RaySums>(own.size());
+  std::vector<RaySums> sums = overRows(light, own.size(), [&](int y, std::vector<RaySums>& into) {
+    thread_local std::vector<const ShiftedTree*> met;
+    thread_local std::vector<std::uint32_t> before;
+    addOthersRow(light, trees, y, met, before, into);
+  });
+  for (std::size_t leaf = 0; leaf < own.size(); ++leaf) {
+    if (own[leaf].rays > 0) continue;
+    for (const ShiftedTree& tree : trees) {
+      const DeepOpacityMap::Counts counts = light.counts(centres[leaf] - tree.displacement);
+      sums[leaf].before += static_cast<std::uint64_t>(counts.before);
+      sums[leaf].beyond += static_cast<std::uint64_t>(counts.beyond);
+    }
+  }
+  return sums;
+}
+
+// What they meet of their own tree. A leaf that no ray meets has its centre's counts and no rays.
+std::vector<RaySums> metOfOwn(const DeepOpacityMap& light, std::span<const glm::vec3> centres) {
+  std::vector<RaySums> sums =
+      overRows(light, centres.size(), [&](int y, std::vector<RaySums>& into) { addOwnRow(light, y, into); });
+  for (std::uint32_t leaf = 0; leaf < sums.size(); ++leaf) {
+    if (sums[leaf].rays > 0) continue;
+    const DeepOpacityMap::Counts counts = light.counts(centres[leaf], leaf);
+    sums[leaf].before = static_cast<std::uint64_t>(counts.before);
+    sums[leaf].beyond = static_cast<std::uint64_t>(counts.beyond);
+  }
+  return sums;
 }
 
 }  // namespace
@@ -99,46 +177,40 @@ std::vector<float> leafProjections(const TreeMesh& mesh, Direction direction) {
   return projections;
 }
 
-LeafDepths leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, std::span<const glm::vec3> neighbours) {
-  std::vector<glm::vec3> displacements = neighboursAlong(neighbours, leafBounds(mesh), light.along());
-  displacements.emplace_back(0.f);
-  std::vector<ShiftedTree> trees;
-  for (const glm::vec3& t : displacements) trees.emplace_back(light, t);
+std::vector<LeafDepths> leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, const Stand& stand,
+                                   const Progress& progress) {
+  const std::vector<glm::vec3> centres = leafCentres(mesh);
+  const std::vector<RaySums> own = metOfOwn(light, centres);
+  const Bounds box = leafBounds(mesh);
+  std::vector<glm::vec3> positions;
+  for (const Placement& tree : stand.trees) positions.push_back(tree.position);
+  const StandIndex index(positions, std::max({box.size().x, box.size().y, 1e-6f}), stand.period,
+                         periodsAround(stand, box));
+  // From somewhere in the box to somewhere in a box like it.
+  const Bounds reached{-box.size(), box.size()};
 
-  tbb::enumerable_thread_specific<std::vector<RaySums>> by_thread{std::vector<RaySums>(mesh.leaf_count)};
-  tbb::parallel_for(tbb::blocked_range<int>(0, light.size().y, kRows), [&](const tbb::blocked_range<int>& rows) {
-    std::vector<RaySums>& sums = by_thread.local();
-    std::vector<std::uint32_t> before;
-    for (int y = rows.begin(); y != rows.end(); ++y) addRow(light, trees, y, before, sums);
-  });
-  std::vector<RaySums> sums(mesh.leaf_count);
-  for (const std::vector<RaySums>& part : by_thread)
-    for (std::size_t leaf = 0; leaf < sums.size(); ++leaf) {
-      sums[leaf].before += part[leaf].before;
-      sums[leaf].beyond += part[leaf].beyond;
-      sums[leaf].rays += part[leaf].rays;
+  std::vector<LeafDepths> result(stand.trees.size());
+  const auto makeDepths = [&](std::size_t tree) {
+    std::vector<ShiftedTree> others;
+    index.along(positions[tree], reached, light.along(), [&](std::uint32_t other, const glm::vec3& displacement) {
+      if (other == tree && displacement == glm::vec3(0.f)) return;
+      if (const ShiftedTree shifted(light, displacement); shifted.meets()) others.push_back(shifted);
+    });
+    const std::vector<RaySums> met = metOfOthers(light, others, own, centres);
+    LeafDepths& depths = result[tree];
+    depths.depth.reserve(own.size());
+    depths.thickness.reserve(own.size());
+    for (std::size_t leaf = 0; leaf < own.size(); ++leaf) {
+      const auto rays = static_cast<double>(std::max<std::uint64_t>(own[leaf].rays, 1));
+      const std::uint64_t before = own[leaf].before + met[leaf].before, beyond = own[leaf].beyond + met[leaf].beyond;
+      depths.depth.push_back(static_cast<float>(static_cast<double>(before) / rays));
+      depths.thickness.push_back(static_cast<float>(static_cast<double>(before + beyond) / rays + 1.));
     }
-
-  std::vector<glm::vec3> centres;  // found if a leaf needs one
-  LeafDepths result;
-  result.depth.reserve(mesh.leaf_count);
-  result.thickness.reserve(mesh.leaf_count);
-  for (std::uint32_t leaf = 0; leaf < mesh.leaf_count; ++leaf) {
-    RaySums& s = sums[leaf];
-    if (s.rays == 0) {
-      if (centres.empty()) centres = leafCentres(mesh);
-      for (const glm::vec3& t : displacements) {
-        const bool own_tree = &t == &displacements.back();
-        const DeepOpacityMap::Counts counts =
-            light.counts(centres[leaf] - t, own_tree ? leaf : DeepOpacityMap::kNoLeaf);
-        s.before += static_cast<std::uint64_t>(counts.before);
-        s.beyond += static_cast<std::uint64_t>(counts.beyond);
-      }
-      s.rays = 1;
-    }
-    const auto rays = static_cast<double>(s.rays);
-    result.depth.push_back(static_cast<float>(static_cast<double>(s.before) / rays));
-    result.thickness.push_back(static_cast<float>(static_cast<double>(s.before + s.beyond) / rays + 1.));
+  };
+  for (std::size_t first = 0; first < result.size(); first += kTrees) {
+    if (!goOn(progress, static_cast<double>(first) / static_cast<double>(result.size())))
+      throw std::runtime_error("interrupted");
+    tbb::parallel_for(first, std::min(result.size(), first + kTrees), makeDepths);
   }
   return result;
 }

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.hpp"
+#include "core/stand.hpp"
 #include "grid/deep_opacity_map.hpp"
 
 namespace sunfleck {
@@ -14,10 +16,13 @@ struct LeafDepths {
   std::vector<float> thickness;  // w = n+ + n- + 1, the leaf itself included [1], >= depth + 1
 };
 
-// (D6) Depth and thickness of each leaf, Eq. 29: crossing counts along the light's axis, averaged over the light rays
-// (the map's pixels) that meet the leaf. A leaf that no pixel centre falls on is counted at its centre.
-//   neighbours  displacements of the other instances of the tree [m]
-LeafDepths leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, std::span<const glm::vec3> neighbours);
+// (D6) Depth and thickness of each leaf of each tree of the stand, Eq. 29: crossing counts along the light's axis,
+// averaged over the light rays (the map's pixels) that meet the leaf. A leaf that no pixel centre falls on is counted
+// at its centre. Another tree's crossings are read in the pixel nearest to where they are. Rotations are not regarded.
+// Throws InvalidInput as periodsAround() does, and std::runtime_error("interrupted") when `progress` ends it.
+//   light  of the tree, along the light
+std::vector<LeafDepths> leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, const Stand& stand = {},
+                                   const Progress& progress = {});
 
 // Centre of area of each leaf [m].
 std::vector<glm::vec3> leafCentres(const TreeMesh& mesh);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <glm/vec2.hpp>
 #include <string>
 
 #include "core/require.hpp"
@@ -10,21 +10,10 @@
 namespace sunfleck {
 namespace {
 
-// Whether the line through the origin along `direction` meets the box centred at `centre`.
-bool meets(glm::vec3 centre, glm::vec3 half_size, Direction direction) {
-  float enter = -std::numeric_limits<float>::infinity();
-  float leave = std::numeric_limits<float>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(direction[axis]) < 1e-9f) {
-      if (std::abs(centre[axis]) > half_size[axis]) return false;
-      continue;
-    }
-    const float a = (centre[axis] - half_size[axis]) / direction[axis];
-    const float b = (centre[axis] + half_size[axis]) / direction[axis];
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
-  }
-  return enter <= leave;
+// How many of the places that are whole periods away from `distance` are at most `reach` away from the origin; of two
+// at that very distance, one.
+double within(double distance, double reach, double period) {
+  return std::floor((reach - distance) / period) - std::floor((-reach - distance) / period);
 }
 
 }  // namespace
@@ -41,28 +30,22 @@ glm::ivec2 periodsAround(const Stand& stand, const Bounds& box) {
   return around;
 }
 
-std::vector<glm::vec3> neighbourDisplacements(const Stand& stand, const Bounds& box, std::size_t index) {
-  std::vector<glm::vec3> displacements;
-  const glm::ivec2 around = periodsAround(stand, box);
-  const glm::vec2 period = stand.period.value_or(glm::vec2(0.f));
-  for (std::size_t i = 0; i < stand.trees.size(); ++i)
-    for (int row = -around.y; row <= around.y; ++row)
-      for (int column = -around.x; column <= around.x; ++column) {
-        if (i == index && row == 0 && column == 0) continue;
-        const glm::vec3 shift(static_cast<float>(column) * period.x, static_cast<float>(row) * period.y, 0.f);
-        displacements.push_back(stand.trees[i].position - stand.trees[index].position + shift);
-      }
-  return displacements;
-}
-
-// Some point of the box reaches the box displaced by t exactly if the line through the origin meets the box of twice
-// the size about t: their Minkowski difference.
-std::vector<glm::vec3> neighboursAlong(std::span<const glm::vec3> displacements, const Bounds& box,
-                                       Direction direction) {
-  std::vector<glm::vec3> met;
-  for (const glm::vec3& t : displacements)
-    if (meets(t, box.size(), direction)) met.push_back(t);
-  return met;
+void requireApart(const Stand& stand, const Bounds& box) {
+  const glm::dvec2 half = 0.49999 * glm::dvec2(box.size());  // the shortest period may be rounded
+  double most = 0.;
+  for (const Placement& tree : stand.trees) {
+    double here = 0.;
+    for (const Placement& other : stand.trees) {
+      const glm::dvec2 away = glm::dvec2(other.position) - glm::dvec2(tree.position);
+      here += stand.period
+                  ? within(away.x, half.x, double{stand.period->x}) * within(away.y, half.y, double{stand.period->y})
+                  : double{std::abs(away.x) <= half.x && std::abs(away.y) <= half.y};
+    }
+    most = std::max(most, here);
+  }
+  constexpr int kMost = kMostOverlap * kMostOverlap;
+  require(most <= kMost, "trees within one tree's width and depth", most,
+          "at most " + std::to_string(kMost) + ": no medium is like so many crowns in one place");
 }
 
 }  // namespace sunfleck

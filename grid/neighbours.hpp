@@ -1,12 +1,8 @@
 #pragma once
 
 #include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <span>
-#include <vector>
 
 #include "core/bounds.hpp"
-#include "core/directions.hpp"
 #include "core/stand.hpp"
 
 namespace sunfleck {
@@ -22,13 +18,8 @@ inline constexpr int kMostOverlap = 8;
 // InvalidInput when the trees overlap more than kMostOverlap-fold.
 glm::ivec2 periodsAround(const Stand& stand, const Bounds& box);
 
-// Displacements of the other instances of a stand from tree `index` [m]: the other trees and, in a periodic stand,
-// their copies and its own within periodsAround(). Rotations are not regarded.
-std::vector<glm::vec3> neighbourDisplacements(const Stand& stand, const Bounds& box, std::size_t index);
-
-// Those of the displacements whose instance can be met from somewhere in `box` along `direction` or against it. `box`
-// is that of one instance.
-std::vector<glm::vec3> neighboursAlong(std::span<const glm::vec3> displacements, const Bounds& box,
-                                       Direction direction);
+// Throws InvalidInput when more than kMostOverlap^2 trees of the stand stand on the ground of one: within half of the
+// box's width and depth of a tree's place, copies counted. Each would be summed into each.
+void requireApart(const Stand& stand, const Bounds& box);
 
 }  // namespace sunfleck

@@ -8,7 +8,6 @@
 #include <span>
 
 #include "grid/cell_grid.hpp"
-#include "grid/neighbours.hpp"
 #include "spp/slab.hpp"
 #include "spp/slab_arrays.hpp"
 
@@ -45,17 +44,12 @@ void addIrradiance(Model model, std::span<const float> projection, std::span<con
 
 }  // namespace
 
-LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand) {
+LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const Progress& progress) {
   const TreeMesh& mesh = *scene.tree;
   const auto start = Clock::now();
   LeafGeometry geometry;
   geometry.projections = leafProjections(mesh, scene.sun());
-  const std::size_t trees = scene.stand.trees.size();
-  geometry.depths.resize(trees);
-  tbb::parallel_for(std::size_t{0}, trees, [&](std::size_t tree) {
-    geometry.depths[tree] =
-        leafDepths(mesh, stand.light(), neighbourDisplacements(scene.stand, stand.cells().leaves, tree));
-  });
+  geometry.depths = leafDepths(mesh, stand.light(), scene.stand, progress);
   geometry.depth_seconds = secondsSince(start);
 
   const auto start_interpolation = Clock::now();

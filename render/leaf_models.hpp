@@ -19,8 +19,8 @@ struct LeafGeometry {
   double depth_seconds = 0.;                     // wall time for depths and projections
   double compensation_seconds = 0.;              // wall time for G of the leaves from that of the cells
 };
-// `stand` is up to date for the scene, with G.
-LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand);
+// `stand` is up to date for the scene, with G. Throws std::runtime_error("interrupted") when `progress` ends it.
+LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const Progress& progress = {});
 
 // (R7) Irradiance of each leaf of the prototype, both sides together per one-sided area, for sun irradiance 1 on a
 // plane facing the sun: the mean over the stand's trees [1].

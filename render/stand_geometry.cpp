@@ -14,7 +14,9 @@ void requireModelled(const Scene& scene) {
   for (const Placement& tree : stand.trees)
     require(tree.rotation == 0.f, "rotation of a tree", tree.rotation,
             "0 for the models: their maps serve translated copies only (trace takes any)");
-  periodsAround(stand, leafBounds(*scene.tree));
+  const Bounds box = leafBounds(*scene.tree);
+  periodsAround(stand, box);
+  requireApart(stand, box);
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort)

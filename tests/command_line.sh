@@ -74,6 +74,9 @@ refuses "frobnicate" frobnicate
 refuses "--albedo" validate leaf.obj --albedo 1.5
 refuses "--albedo" trace leaf.obj --albedo -0.1
 refuses "--albedo" render leaf.obj -o x.png --albedo nan
+printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "positions"\npositions = [%s]\n' \
+  "$(seq 65 | awk '{ printf "[%g, 0],", $1 / 1000 }')" >crowd.toml
+for command in "validate" "render -o x.png"; do refuses "= 65: must be at most 64" $command crowd.toml; done
 refuses "thickness" slab --thickness -1
 refuses "omega" slab --omega 2
 refuses "omega = 1.0000001: must be in [0, 1]" slab --omega 1.0000001
@@ -249,6 +252,7 @@ refuses "excludes" slab --batch many.csv --omega 0.5
 
 does "COMMAND" --help
 does "zenith_deg" --help scene
+does "at most 1024 trees" --help scene
 does "Sunfleck" --version
 for command in validate slab tables plant voxelize trace render bench; do does "--json" $command --help; done
 does "reflectance" slab --omega 1 --thickness 5

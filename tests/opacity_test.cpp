@@ -85,12 +85,12 @@ TEST(D3_DeepOpacityMap, KeepsTheProjectedArea) {
 // (D3) (D6) Check that one thread and four make the same map and the same depths, bit by bit.
 TEST(D3_DeepOpacityMap, IsTheSameForAnyNumberOfThreads) {
   const TreeMesh mesh = randomCrown({}, 3);
-  const std::vector<glm::vec3> neighbours{{1.5f, 0.2f, 0.f}, {-0.7f, 1.1f, 0.3f}};
+  const Stand stand{.trees = {{}, {.position = {1.5f, 0.2f, 0.f}}, {.position = {-0.7f, 1.1f, 0.3f}}}};
   const Direction slanted = glm::normalize(glm::vec3(0.3f, -0.5f, -0.8f));
   const auto made = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     DeepOpacityMap map(mesh, slanted, 256);
-    LeafDepths depths = leafDepths(mesh, map, neighbours);
+    LeafDepths depths = leafDepths(mesh, map, stand).front();
     return std::pair(std::move(map), std::move(depths));
   };
   const auto [map, depths] = made(1);
@@ -126,7 +126,7 @@ TEST(D3_DeepOpacityMap, OfOnePixelAndOfALeafEdgeOn) {
     EXPECT_GT(map.pixelSize(), 0.f);
     EXPECT_TRUE(map.crossings().empty());
     EXPECT_EQ(map.first().size(), static_cast<std::size_t>(map.size().x * map.size().y) + 1);
-    const LeafDepths depths = leafDepths(edge_on, map, {});
+    const LeafDepths depths = leafDepths(edge_on, map).front();
     EXPECT_EQ(depths.depth[0], 0.f);
     EXPECT_EQ(depths.thickness[0], 1.f);
   }
@@ -153,7 +153,7 @@ TEST(D3_DeepOpacityMap, OfOnePixelAndOfALeafEdgeOn) {
 // (D6) Check depth and thickness of a stack, where they are known: n+ = 0, 1, 2 from the top, w = 3 for all.
 TEST(D6_LeafDepths, OfAStack) {
   const TreeMesh mesh = stack({3.f, 1.f, 2.f});
-  const LeafDepths depths = leafDepths(mesh, DeepOpacityMap(mesh, kDown, 16), {});
+  const LeafDepths depths = leafDepths(mesh, DeepOpacityMap(mesh, kDown, 16)).front();
   EXPECT_EQ(depths.depth, (std::vector<float>{0.f, 2.f, 1.f}));
   EXPECT_EQ(depths.thickness, (std::vector<float>{3.f, 3.f, 3.f}));
 }
@@ -166,7 +166,7 @@ TEST(D6_LeafDepths, OfALeafEdgeOnToTheLight) {
     mesh.vertices.push_back(corner);
   mesh.leaf_triangles.push_back({first, first + 1, first + 2});
   finish(mesh, "edge-on");
-  const LeafDepths depths = leafDepths(mesh, DeepOpacityMap(mesh, kDown, 16), {});
+  const LeafDepths depths = leafDepths(mesh, DeepOpacityMap(mesh, kDown, 16)).front();
   EXPECT_EQ(depths.depth[1], 1.f);
   EXPECT_EQ(depths.thickness[1], 2.f);
 }
@@ -177,23 +177,68 @@ TEST(D6_LeafDepths, CountNeighbours) {
   const TreeMesh mesh = stack({0.f});
   const Direction slanted = glm::normalize(glm::vec3(1.f, 0.f, -1.f));
   const DeepOpacityMap map(mesh, slanted, 64);
-  const std::vector<glm::vec3> neighbours{{-1.f, 0.f, 1.f}, {2.f, 0.f, -2.f}, {0.f, 5.f, 0.f}};
-  const LeafDepths depths = leafDepths(mesh, map, neighbours);
+  const Stand stand{
+      .trees = {{}, {.position = {-1.f, 0.f, 1.f}}, {.position = {2.f, 0.f, -2.f}}, {.position = {0.f, 5.f, 0.f}}}};
+  const LeafDepths depths = leafDepths(mesh, map, stand).front();
   EXPECT_NEAR(depths.depth[0], 1.f, 1e-6f);
   EXPECT_NEAR(depths.thickness[0], 3.f, 1e-6f);
 }
 
-// Check the neighbours along a direction against those worked out by hand, for trees 2 m wide that touch: 8 periods are
-// kept; overhead only the 8 that touch can be met; and along x three rows.
-TEST(Neighbours, AlongADirectionAreThoseThatCanBeMet) {
+// (D6) Check depth and thickness in a periodic stand of two trees, squares of side 1, against counts by hand. Light at
+// 45 degrees along x; the second tree is 2 m higher, so that its shadow on z = 0 lies 2 m on: on [1.25, 2.25] and so on
+// by periods of 2 m, which meets a quarter of the first tree's [0, 1].
+TEST(D6_LeafDepths, CountTheCopiesOfAPeriodicStand) {
+  const TreeMesh mesh = stack({0.f});
+  const Direction slanted = glm::normalize(glm::vec3(1.f, 0.f, -1.f));
+  const DeepOpacityMap map(mesh, slanted, 64);
+  const Stand stand{.trees = {{}, {.position = {1.25f, 0.f, 2.f}}}, .period = glm::vec2(2.f, 1.f)};
+  const std::vector<LeafDepths> depths = leafDepths(mesh, map, stand);
+  const float pixel = 1.f / 64.f;  // the pixel nearest to the shifted one is up to half of one off
+  EXPECT_NEAR(depths[0].depth[0], 0.25f, pixel);
+  EXPECT_NEAR(depths[0].thickness[0], 1.25f, pixel);
+  EXPECT_EQ(depths[1].depth[0], 0.f);
+  EXPECT_NEAR(depths[1].thickness[0], 1.25f, pixel);
+}
+
+// (D6) Check that the depths of each tree of many are the same to the bit as if only those that can be met stood there:
+// trees in a row across the light do not see each other, and the order is none.
+TEST(D6_LeafDepths, OfEachTreeCountThoseItMeets) {
+  const TreeMesh mesh = randomCrown({}, 3);
+  const float width = leafBounds(mesh).size().x + leafBounds(mesh).size().y;
+  const Direction slanted = glm::normalize(glm::vec3(1.f, 0.f, -0.2f));
+  const DeepOpacityMap map(mesh, slanted, 64);
+  Stand stand;
+  stand.trees.clear();
+  for (int row = 0; row < 5; ++row)
+    for (const float x : {0.f, 0.7f, 2.5f})
+      stand.trees.push_back({.position = {x, width * static_cast<float>(row), 0}});
+  const std::vector<LeafDepths> all = leafDepths(mesh, map, stand);
+  const std::vector<LeafDepths> of_row =
+      leafDepths(mesh, map, {.trees = {stand.trees[2], stand.trees[1], stand.trees[0]}});
+  for (std::size_t tree = 0; tree < all.size(); ++tree) {
+    EXPECT_EQ(all[tree].depth, of_row[2 - tree % 3].depth) << tree;
+    EXPECT_EQ(all[tree].thickness, of_row[2 - tree % 3].thickness) << tree;
+  }
+  EXPECT_NE(all[0].depth, leafDepths(mesh, map).front().depth);
+}
+
+// Check that as many trees may stand in one place as the shortest period allows, and no more: alone, as copies, and
+// both.
+TEST(Neighbours, AreNotTooManyInOnePlace) {
   Bounds box;
   box.include(glm::vec3(-1.f, -1.f, 0.f));
   box.include(glm::vec3(1.f, 1.f, 3.f));
-  const std::vector<glm::vec3> all =
-      neighbourDisplacements({.trees = {Placement{}}, .period = glm::vec2(2.f, 2.f)}, box, 0);
-  EXPECT_EQ(all.size(), 17u * 17u - 1u);
-  EXPECT_EQ(neighboursAlong(all, box, kDown).size(), 8u);
-  EXPECT_EQ(neighboursAlong(all, box, {1.f, 0.f, 0.f}).size(), 3u * 17u - 1u);
+  Stand stand{.trees = std::vector<Placement>(64)};
+  for (std::size_t i = 0; i < 64; ++i) stand.trees[i].position.x = 1e-3f * static_cast<float>(i);
+  EXPECT_NO_THROW(requireApart(stand, box));
+  stand.trees.push_back({.position = {5.f, 0.f, 0.f}});
+  EXPECT_NO_THROW(requireApart(stand, box));
+  stand.period = glm::vec2(5.f, 9.f);  // a copy of the last stands among them
+  EXPECT_THROW(requireApart(stand, box), InvalidInput);
+  stand = {.trees = {Placement{}}, .period = glm::vec2(0.251f)};
+  EXPECT_NO_THROW(requireApart(stand, box));
+  stand.trees.emplace_back();
+  EXPECT_THROW(requireApart(stand, box), InvalidInput);
 }
 
 // Check that overlapping copies are all kept, as far as 8 widths, and that a period too short for the models is
@@ -214,7 +259,7 @@ TEST(D6_LeafDepths, OfAFoldedLeaf) {
   mesh.leaf_triangles = {{0, 1, 2}, {0, 1, 3}};  // two flaps on one edge, the second below the first
   finish(mesh, "folded");
   ASSERT_EQ(mesh.leaf_count, 1u);
-  const LeafDepths depths = leafDepths(mesh, DeepOpacityMap(mesh, kDown, 32), {});
+  const LeafDepths depths = leafDepths(mesh, DeepOpacityMap(mesh, kDown, 32)).front();
   EXPECT_EQ(depths.depth[0], 0.f);
   EXPECT_EQ(depths.thickness[0], 1.f);
 }

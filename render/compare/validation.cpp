@@ -54,7 +54,7 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
   requireValidatable(scene, effort.band);
   const auto band = effort.band;
   Validation result{.scene = scene, .effort = effort};
-  const LeafGeometry geometry = leafGeometry(scene, stand);
+  const LeafGeometry geometry = leafGeometry(scene, stand, [&](double) { return goOn(progress, 0.); });
   result.depths = meanDepths(geometry);
   result.mean_depth = mean(result.depths.depth);
   result.mean_thickness = mean(result.depths.thickness);
