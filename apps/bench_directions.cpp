@@ -42,7 +42,7 @@ nlohmann::ordered_json json(const std::vector<DirectionBenchPoint>& points) {
 int runBenchDirections(const SceneOptions& options, const std::string& folder_name, const RunOptions& run) {
   const Scene scene = readScene(options);
   const std::filesystem::path folder(folder_name);
-  makeFolder(folder);
+  const OutputFolder made(folder);
   const auto csv = folder / "direction_bench.csv", svg = folder / "direction_bench.svg";
   requireWritable(csv);
   requireWritable(svg);

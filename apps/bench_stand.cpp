@@ -60,7 +60,7 @@ nlohmann::ordered_json json(const StandBench& bench) {
 
 int runBenchStand(std::size_t most_trees, const std::string& folder_name, const RunOptions& run) {
   const std::filesystem::path folder(folder_name);
-  makeFolder(folder);
+  const OutputFolder made(folder);
   const auto csv = folder / "stand_bench.csv", svg = folder / "stand_bench.svg";
   requireWritable(csv);
   requireWritable(svg);

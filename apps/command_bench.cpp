@@ -59,7 +59,7 @@ nlohmann::ordered_json json(const SlabBench& bench) {
 
 int runBenchSlab(const std::string& folder_name, const RunOptions& run) {
   const fs::path folder(folder_name);
-  makeFolder(folder);
+  const OutputFolder made(folder);
   requireWritable(folder / "slab_bench.csv");
   requireWritable(folder / "slab_bench.svg");
   const SlabBench bench = benchSlabs(terminalProgress("measuring", run.quiet));
@@ -104,7 +104,7 @@ void addBench(CLI::App& app, RunOptions& options, int& status) {
                                   "What stands of trees cost to prepare and to change, beside the paper's Table 4");
   folderOption(*of_stand, "stand_bench.csv and stand_bench.svg");
   of_stand->add_option("--trees", *trees, "Trees of the largest stand, 16 to 50000 (default 1024; 10000 take 1.3 GB)")
-      ->check(numberIn(16., 5e4, "a whole number, 16 to 50000"));
+      ->transform(wholeNumberIn(16., 5e4, "a whole number, 16 to 50000"));
   of_stand->callback([trees, folder, &options, &status] { status = runBenchStand(*trees, *folder, options); });
 
   folderOption(*bench, "slab_bench.csv and slab_bench.svg");

@@ -12,6 +12,7 @@
 #include "apps/terminal.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
+#include "render/gl/tree_picture.hpp"
 #include "render/image_file.hpp"
 
 namespace sunfleck::apps {
@@ -38,9 +39,15 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   stand.update(scene, model, treesInPicture(scene, cameraOf(scene)),
                terminalProgress("opacity maps and cells", run.quiet));
   const double prepared = seconds();
-  const Image image = modelPicture(scene, stand, model);
+  const Image image = [&] {
+    try {
+      return modelPicture(scene, stand, model, terminalProgress("drawing", run.quiet));
+    } catch (const gl::MapTooLarge& e) {
+      throw InvalidInput(fmt::format("--map = {}: {}", options.effort.light_resolution, e.what()));
+    }
+  }();
   const double shaded = seconds() - prepared;
-  if (interrupted()) throw std::runtime_error("interrupted");  // drawing itself does not hear of it
+  if (interrupted()) throw std::runtime_error("interrupted");
   writeImage(options.output, image, options.exposure);
   if (run.json) {
     nlohmann::ordered_json result{{"output", options.output}, {"model", options.model},      {"width", image.width},
@@ -71,7 +78,7 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
   command->add_option("--exposure", render->exposure, "Factor from radiance to brightness in a .png (default 3)")
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
-      ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
+      ->transform(wholeNumberIn(1., 4096., "a whole number, 1 to 4096"));
   command->add_flag("--stats", render->stats, "Tell what was computed, reused and skipped, and what it took");
   command->callback([render, &options, &status] { status = runRender(*render, options); });
 }

@@ -130,7 +130,7 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   command->add_option("--paths", trace->paths, "Paths of light from the sun (default 4e6)")
       ->check(numberIn(64., 1e15, "in [64, 1e15]"));
   command->add_option("--samples", trace->samples, "Paths through each pixel of the picture (default 64)")
-      ->check(numberIn(1., 1e6, "a whole number, 1 to 1e6"));
+      ->transform(wholeNumberIn(1., 1e6, "a whole number, 1 to 1e6"));
   command->add_option("--band", trace->band, "Band of the scene's optics: 0, 1 or 2, red, green or blue (default 0)")
       ->check(numberIn(0., 2., "0, 1 or 2"));
   command->add_option("-o,--leaves", trace->leaves, "CSV to write: irradiance of each leaf and its standard error");

@@ -62,9 +62,10 @@ std::string percent(const std::optional<double>& fraction, const char* sign = ""
 // Ours and the paper's Table 3. Its tree is a cherry too, but not this one.
 std::string table(std::span<const Validation> validations) {
   const Validation& first = validations.front();
+  const std::size_t leaves = first.scene.tree->leaf_count, triangles = first.scene.tree->leaf_triangles.size();
   std::string text =
-      fmt::format("{}: {} leaves ({} triangles), {:.4g} m2, albedo {:.3g}, sun {:.3g} degrees from the zenith\n",
-                  first.scene.name, first.scene.tree->leaf_count, first.scene.tree->leaf_triangles.size(),
+      fmt::format("{}: {} {} ({} {}), {:.4g} m2, albedo {:.3g}, sun {:.3g} degrees from the zenith\n", first.scene.name,
+                  leaves, leaves == 1 ? "leaf" : "leaves", triangles, triangles == 1 ? "triangle" : "triangles",
                   first.leaf_area, first.optics().albedo(), first.scene.sun_zenith * 57.29578f);
   for (const Validation& v : validations) {
     text += fmt::format("\n{:<12} RMS error against Monte Carlo, mean depth {:.2f} in {:.2f}\n", kindOf(v.scene),
@@ -78,13 +79,16 @@ std::string table(std::span<const Validation> validations) {
                           percent(m.errors.rms_weighted), percent(m.errors.rms_leaf), percent(m.errors.bias, "+"),
                           1e3 * (m.prepare_seconds + m.shade_seconds));
     }
-    text += fmt::format("  {:<6} {:>12} {:>8} {:>10.2f} % {:>8.1f} % {:>12} {:>10.1f} s   ({:.3g} million paths)\n",
-                        "noise", "", "", 100. * v.category_noise, 100. * v.reference_noise, "", v.reference.seconds,
-                        static_cast<double>(v.reference.paths) * 1e-6);
+    text +=
+        fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>10.1f} s   ({:.3g} million paths)\n", "noise", "", "",
+                    v.category_noise ? fmt::format("{:.2f} %", 100. * *v.category_noise) : "-",
+                    percent(v.reference_noise), "", v.reference.seconds, static_cast<double>(v.reference.paths) * 1e-6);
+    if (!v.reference_noise) text += "  no path of Monte Carlo lit a leaf: there is nothing to compare with\n";
     if (v.leaves_left_out > 0)
       text += fmt::format("  {} leaves are in categories of fewer than 5 and left out of the first and third column\n",
                           v.leaves_left_out);
   }
+  if (validations.size() > 1) text += "\ntime: of the second stand without the maps that the first has left it\n";
   if (paperError(first, Model::ss))
     text += "\npaper: Table 3 of Shinya et al. 2013, for a cherry of its own; to be held against \"by category\"\n";
   return text;
@@ -107,9 +111,12 @@ std::vector<ReportPicture> makePictures(const ValidateOptions& options, const Ru
     writeImage(folder / (name + ".exr"), image, kExposure);
     pictures.push_back({caption, pngBytes(image, kExposure)});
   };
-  keep("ss", "SS: light scattered once", modelPicture(scene, stand, Model::ss));
-  keep("spp", "SPP: every leaf in an infinite slab", modelPicture(scene, stand, Model::spp));
-  keep("sppg", "SPPG: the slab compensated for the crown's edge", modelPicture(scene, stand, Model::sppg));
+  const auto by = [&](Model model) {
+    return modelPicture(scene, stand, model, terminalProgress("drawing, " + labelOf(model), run.quiet));
+  };
+  keep("ss", "SS: light scattered once", by(Model::ss));
+  keep("spp", "SPP: every leaf in an infinite slab", by(Model::spp));
+  keep("sppg", "SPPG: the slab compensated for the crown's edge", by(Model::sppg));
   const PixelRays pixels = pixelRays(scene);
   const TraceLight light{.sun = scene.sun(),
                          .leaf = scene.leaf[static_cast<std::size_t>(options.effort.band)],
@@ -132,7 +139,7 @@ std::vector<ReportPicture> picturesIfPossible(const ValidateOptions& options, co
   } catch (const InvalidInput&) {
     throw;
   } catch (const std::runtime_error& e) {
-    fmt::print(stderr, "sunfleck: no pictures: {}\n", e.what());
+    if (!interrupted()) fmt::print(stderr, "sunfleck: no pictures: {}\n", e.what());
     return {};
   }
 }
@@ -143,7 +150,7 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
   const Scene given = readScene(options.scene);
   const std::vector<Scene> scenes = scenesOf(options, given);
   for (const Scene& scene : scenes) requireValidatable(scene, options.effort.band);
-  makeFolder(options.folder);
+  const OutputFolder made(options.folder);
   requireWritable(fs::path(options.folder) / "report.html");
   std::vector<Validation> validations;
   std::vector<ReportPicture> pictures;
@@ -194,11 +201,11 @@ void addValidate(CLI::App& app, RunOptions& options, int& status) {
       ->check(numberIn(64., 1e15, "in [64, 1e15]"));
   command
       ->add_option("--samples", validate->samples, "Monte Carlo paths through each pixel of the picture (default 64)")
-      ->check(numberIn(1., 1e6, "a whole number, 1 to 1e6"));
+      ->transform(wholeNumberIn(1., 1e6, "a whole number, 1 to 1e6"));
   command
       ->add_option("--band", validate->effort.band,
                    "Band of the scene's optics: 0, 1 or 2, red, green or blue (default 0)")
-      ->check(numberIn(0., 2., "0, 1 or 2"));
+      ->transform(wholeNumberIn(0., 2., "0, 1 or 2"));
   command->add_flag("--with-wood", validate->effort.with_wood,
                     "Let wood stop light in Monte Carlo; the models know leaves only");
   command->add_flag("--stats", validate->stats,
@@ -206,13 +213,13 @@ void addValidate(CLI::App& app, RunOptions& options, int& status) {
   command->add_flag("--no-pictures", validate->no_pictures, "Make no pictures");
   command
       ->add_option("--map", validate->geometry.light_resolution, "Pixels along the light's opacity map (default 512)")
-      ->check(numberIn(1., 4096., "a whole number, 1 to 4096"));
+      ->transform(wholeNumberIn(1., 4096., "a whole number, 1 to 4096"));
   command
       ->add_option("--directions", validate->geometry.sample_directions,
                    "Sample directions of the G-factor, an even number (default 22)")
-      ->check(numberIn(2., 4096., "an even number, 2 to 4096"));
+      ->transform(wholeNumberIn(2., 4096., "an even number, 2 to 4096"));
   command->add_option("--cells", validate->geometry.cells, "Cells along the longest side of a tree (default 16)")
-      ->check(numberIn(1., 64., "a whole number, 1 to 64"));
+      ->transform(wholeNumberIn(1., 64., "a whole number, 1 to 64"));
   command->callback([validate, &options, &status] { status = runValidate(*validate, options); });
 }
 

@@ -15,6 +15,7 @@
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "grid/density_grid.hpp"
+#include "grid/isolated_read.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -58,7 +59,7 @@ int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
   const DensityGrid grid = [&] {
     if (from_grid) {
       if (options.stand) throw InvalidInput("--stand: a .vdb file holds grids and no trees to place");
-      return DensityGrid::read(options.scene.scene);
+      return readIsolated(options.scene.scene, [](double) { return !interrupted(); });
     }
     const Scene scene = readScene(options.scene);
     source.name = scene.source;

@@ -4,8 +4,10 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "apps/terminal.hpp"
 #include "apps/version.hpp"
 #include "core/require.hpp"
+#include "grid/isolated_read.hpp"
 #include "render/scene_file.hpp"
 
 namespace {
@@ -20,6 +23,7 @@ namespace {
 using namespace sunfleck;
 
 constexpr int kWrongInput = 2;
+constexpr std::string_view kReadGrid = "read-grid";  // how the program calls itself: see grid/isolated_read.hpp
 
 // A user's mistake is told in one line, whatever the message was made of.
 int wrongInput(std::string message) {
@@ -47,6 +51,9 @@ bool asksForSceneHelp(int count, char** arguments) {
 std::vector<std::string> withCommand(const CLI::App& app, int count, char** arguments) {
   std::vector<std::string> words(std::make_reverse_iterator(arguments + count),
                                  std::make_reverse_iterator(arguments + 1));
+  // "--help COMMAND" is "COMMAND --help".
+  if (words.size() > 1 && (words.back() == "--help" || words.back() == "-h"))
+    std::rotate(words.begin(), words.end() - 1, words.end());
   static constexpr std::array own{"-h", "--help", "--version"};
   const auto saysWhatToDo = [&](const std::string& word) {
     return std::find(own.begin(), own.end(), word) != own.end() ||
@@ -96,6 +103,10 @@ int run(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  const std::span<char*> words(arguments, static_cast<std::size_t>(count));
+  if (words.size() == 6 && words[1] == kReadGrid)
+    return sunfleck::serveIsolatedRead(words[2], words[3], std::strtoull(words[4], nullptr, 10),
+                                       std::strtoull(words[5], nullptr, 10));
   apps::catchInterrupts();
   try {
     const int status = run(count, arguments);

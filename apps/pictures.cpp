@@ -4,10 +4,10 @@
 
 namespace sunfleck::apps {
 
-Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model) {
+Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress) {
   gl::ShadingData data{.sun = &stand.light(), .cells = &stand.cells()};
   for (const std::vector<float>& of_tree : stand.compensation()) data.compensation.emplace_back(of_tree);
-  return gl::treePicture(scene, data, model);
+  return gl::treePicture(scene, data, model, progress);
 }
 
 void showGround(Scene& scene) {

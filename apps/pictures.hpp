@@ -17,7 +17,7 @@ inline constexpr float kExposure = 3.f;
 void showGround(Scene& scene);
 
 // The scene shaded by a model on the GPU; `stand` is up to date for it and the model.
-Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model);
+Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress = {});
 
 // The rays of the scene's camera.
 PixelRays pixelRays(const Scene& scene);

@@ -1,5 +1,6 @@
 #include "apps/run_options.hpp"
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -18,6 +19,21 @@ CLI::Validator numberIn(double low, double high, const std::string& rule) {
       "");
 }
 
+CLI::Validator wholeNumberIn(double low, double high, const std::string& rule) {
+  return CLI::Validator(
+      [=](std::string& text) -> std::string {
+        if (const std::string wrong = numberIn(low, high, rule)(text); !wrong.empty()) return wrong;
+        if (std::uint64_t plain = 0; CLI::detail::lexical_cast(text, plain))
+          return {};  // more digits than a double has
+        double value = 0.;
+        CLI::detail::lexical_cast(text, value);
+        if (value != std::floor(value)) return text + ": must be " + rule;
+        text = fmt::format("{:.0f}", value);
+        return {};
+      },
+      "");
+}
+
 namespace {
 
 void limitThreads(int threads) {
@@ -32,10 +48,10 @@ CLI::App* addCommand(CLI::App& app, RunOptions& options, const std::string& name
   command->add_flag("--json", options.json, "Print results as JSON")->group("Common");
   command->add_flag("--quiet", options.quiet, "Show no progress")->group("Common");
   command->add_option("--threads", options.threads, "Number of threads; 0 takes all cores. Results do not depend on it")
-      ->check(numberIn(0, 1024, "a whole number, 0 to 1024"))
+      ->transform(wholeNumberIn(0, 1024, "a whole number, 0 to 1024"))
       ->group("Common");
   command->add_option("--seed", options.seed, "Seed of the random numbers (default 1)")
-      ->check(numberIn(0, 1e18, "a whole number, 0 to 1e18"))
+      ->transform(wholeNumberIn(0, 1e18, "a whole number, 0 to 1e18"))
       ->group("Common");
   command->parse_complete_callback([&options] { limitThreads(options.threads); });
   return command;

@@ -18,6 +18,9 @@ struct RunOptions {
 // A command line check: a finite number in [low, high], or the message "must be <rule>".
 CLI::Validator numberIn(double low, double high, const std::string& rule);
 
+// The same of a whole number, in whatever way it is written: for option->transform().
+CLI::Validator wholeNumberIn(double low, double high, const std::string& rule);
+
 // Adds a command to `app` and gives it the options of RunOptions.
 CLI::App* addCommand(CLI::App& app, RunOptions& options, const std::string& name, const std::string& about);
 

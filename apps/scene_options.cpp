@@ -76,7 +76,7 @@ void addCameraOptions(CLI::App& command, CameraOptions& options) {
       ->group(group);
   command.add_option("--size", options.size, "Width and height of the picture, in pixels")
       ->expected(2)
-      ->check(numberIn(1., 8192., "a whole number, 1 to 8192"))
+      ->transform(wholeNumberIn(1., 8192., "a whole number, 1 to 8192"))
       ->group(group);
 }
 

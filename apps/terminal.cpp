@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/whole_file.hpp"
+
 namespace sunfleck::apps {
 namespace {
 
@@ -45,8 +47,12 @@ struct Bar {
 
 void catchInterrupts() {
   struct sigaction action {};
-  action.sa_handler = [](int) { interrupt_seen = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  action.sa_handler = [](int signal) {
+    if (!interrupt_seen.exchange(true)) return;
+    removeUnfinished();
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }

@@ -1,12 +1,17 @@
 #include "core/whole_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "core/require.hpp"
 
@@ -22,16 +27,41 @@ fs::path folderOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+// Beside `path`, and of the same extension.
+fs::path temporaryFor(const fs::path& path) {
+  std::string name(".");
+  name.append(path.stem().string()).append(".").append(std::to_string(getpid())).append(path.extension().string());
+  return folderOf(path) / name;
+}
+
+// Path of the file that is being written, where a signal's handler finds it: empty when there is none.
+std::array<char, 4096> unfinished{};
+std::atomic<bool> is_unfinished{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
 // Removes the temporary file unless it has been renamed away.
 struct Temporary {
   fs::path path;
+  explicit Temporary(fs::path made) : path(std::move(made)) {
+    const std::string& name = path.native();
+    if (name.size() >= unfinished.size()) return;
+    *std::copy(name.begin(), name.end(), unfinished.begin()) = '\0';
+    is_unfinished = true;
+  }
   ~Temporary() {
+    is_unfinished = false;
     std::error_code ignored;
     fs::remove(path, ignored);
   }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
 };
 
 }  // namespace
+
+void removeUnfinished() noexcept {
+  if (is_unfinished) unlink(unfinished.data());
+}
 
 void requireWritable(const fs::path& path) {
   std::error_code failure;
@@ -39,7 +69,13 @@ void requireWritable(const fs::path& path) {
   if (fs::is_directory(path, failure)) cannotWrite(path, "it is a folder");
   if (fs::exists(path, failure) && !fs::is_regular_file(path, failure)) cannotWrite(path, "it is no regular file");
   if (!fs::is_directory(folderOf(path), failure)) cannotWrite(path, "there is no folder " + folderOf(path).string());
-  if (access(folderOf(path).c_str(), W_OK | X_OK) != 0) cannotWrite(path, std::strerror(errno));
+  // Permissions do not tell all: not every file system takes files, nor every name.
+  const fs::path tried = temporaryFor(path);
+  const int file = open(tried.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
+  if (file < 0 && errno != EEXIST) cannotWrite(path, std::strerror(errno));
+  if (file < 0) return;
+  close(file);
+  fs::remove(tried, failure);
 }
 
 void requireNamed(const fs::path& path, std::string_view extension) {
@@ -53,8 +89,7 @@ void writeWhole(const fs::path& path, const std::function<void(const fs::path&)>
   std::error_code failure;
   // Through a symbolic link it is the file behind it that is replaced.
   const fs::path target = fs::is_symlink(path, failure) ? fs::weakly_canonical(path) : path;
-  const Temporary temporary{folderOf(target) /
-                            ("." + path.stem().string() + "." + std::to_string(getpid()) + path.extension().string())};
+  const Temporary temporary(temporaryFor(target));
   write(temporary.path);
   fs::rename(temporary.path, target, failure);
   if (failure) cannotWrite(path, failure.message());

@@ -12,6 +12,9 @@ namespace sunfleck {
 void writeWhole(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
 void writeWhole(const std::filesystem::path& path, std::string_view text);
 
+// Removes the temporary file of a write under way, if there is one: for the handler of a signal that ends the program.
+void removeUnfinished() noexcept;
+
 // Throws InvalidInput unless a file could be written at `path`: to be asked before long work, not after it.
 void requireWritable(const std::filesystem::path& path);
 

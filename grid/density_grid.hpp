@@ -58,6 +58,10 @@ class DensityGrid {
   // cannot be written.
   void write(const std::filesystem::path& file, const GridSource& source) const;
 
+  // The same into a .vdb file that is there already, such as one that lies in memory, without a source. Throws
+  // std::exception when it cannot be written, and leaves it as it is then.
+  void writeOver(const std::filesystem::path& file) const;
+
   float at(glm::vec3 position) const;  // density of the cell that holds the position [1/m]; 0 outside
   LeafOrientation orientationAt(glm::vec3 position) const;  // of that cell's leaves; all directions alike outside
   float woodAt(glm::vec3 position) const;                   // wood's extinction in that cell [1/m]; 0 outside

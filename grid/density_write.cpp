@@ -100,4 +100,9 @@ void DensityGrid::write(const fs::path& file, const GridSource& source) const {
   });
 }
 
+void DensityGrid::writeOver(const fs::path& file) const {
+  initializeOpenVdb();
+  writeVdb(describedGrids(*cells_, {}), file);
+}
+
 }  // namespace sunfleck

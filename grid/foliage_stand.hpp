@@ -141,7 +141,7 @@ class FoliageStand {
   void prepareDepths(std::span<const std::size_t> instances, bool with_lights, const Progress& progress);
   void applyChanges(std::span<const std::size_t> standing);
   std::vector<Part> changedParts(std::span<const std::size_t> standing);
-  void adjustSums(const std::vector<Part>& parts);
+  void adjustSums(ProductGraph::Product depths, std::span<const Part> parts);  // all of these depths
   Adjusted adjust(std::span<const Part> parts);
   void passOn(const Adjusted& adjusted);
   void touchDepths();

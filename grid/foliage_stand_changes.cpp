@@ -57,9 +57,12 @@ void FoliageStand::applyChanges(std::span<const std::size_t> standing) {
     index_ = StandIndex(positions_, std::max(width, 1e-6f), period_, around);
     around_ = around;
     index_stale_ = false;
-    std::vector<Part> parts = changedParts(standing);
+    const std::vector<Part> parts = changedParts(standing);
     changes_.clear();
-    if (!parts.empty()) adjustSums(std::move(parts));
+    const auto of_lights = std::partition_point(parts.begin(), parts.end(),
+                                                [&](const Part& part) { return part.axis < effort_.axes.size(); });
+    adjustSums(sample_depths_, {parts.begin(), of_lights});
+    adjustSums(light_depths_, {of_lights, parts.end()});
   } catch (...) {  // out of memory, say: what is half done is not known
     touchDepths();
     throw;
@@ -95,21 +98,21 @@ std::vector<FoliageStand::Part> FoliageStand::changedParts(std::span<const std::
             if (!stale) parts.push_back({instance, axis, source, -displacement, times});
           });
     }
-  std::sort(parts.begin(), parts.end(),
-            [](const Part& a, const Part& b) { return std::tie(a.instance, a.axis) < std::tie(b.instance, b.axis); });
+  const auto order = [axes](const Part& part) { return std::tuple(part.axis >= axes, part.instance, part.axis); };
+  std::sort(parts.begin(), parts.end(), [&](const Part& a, const Part& b) { return order(a) < order(b); });
   return parts;
 }
 
-void FoliageStand::adjustSums(const std::vector<Part>& parts) {
-  // Its time stands with the depths, those along lights included.
-  const Stopwatch watch(graph_.cost(sample_depths_).seconds);
+void FoliageStand::adjustSums(ProductGraph::Product depths, std::span<const Part> parts) {
+  if (parts.empty()) return;
+  const Stopwatch watch(graph_.cost(depths).seconds);
   std::vector<std::size_t> first{0};  // of the parts of each instance
   for (std::size_t i = 1; i < parts.size(); ++i)
     if (parts[i].instance != parts[i - 1].instance) first.push_back(i);
   first.push_back(parts.size());
   std::vector<Adjusted> adjusted(first.size() - 1);
   tbb::parallel_for(std::size_t{0}, adjusted.size(), [&](std::size_t group) {
-    adjusted[group] = adjust(std::span(parts).subspan(first[group], first[group + 1] - first[group]));
+    adjusted[group] = adjust(parts.subspan(first[group], first[group + 1] - first[group]));
   });
   for (const Adjusted& of_instance : adjusted) passOn(of_instance);
 }
@@ -126,14 +129,15 @@ FoliageStand::Adjusted FoliageStand::adjust(std::span<const Part> parts) {
     const std::size_t axis = parts[i].axis;
     std::fill(beyond.begin(), beyond.end(), 0);
     std::fill(before.begin(), before.end(), 0);
-    for (; i < parts.size() && parts[i].axis == axis; ++i) {
+    const std::size_t first_part = i;
+    for (; i < parts.size() && i - first_part < kMostSummed && parts[i].axis == axis; ++i) {
       const Prototype& source = prototypes_[parts[i].source];
       source.axes[axis]->addTo(source.cells, *receiver.axes[axis], receiver.cells, placed.prototype,
                                parts[i].displacement, parts[i].times, beyond, before);
     }
     std::vector<char>& changed = axis < axes ? result.by_samples : result.by_light[axis - axes];
     changed.resize(cells, 0);
-    bool lost = false;
+    bool lost = i - first_part == kMostSummed;  // the sum of the rest does not say how deep this is
     for (const bool is_before : {false, true}) {
       const std::span<FixedDepth> sums = row(placed, axis, is_before);
       const std::span<const std::int32_t> added = is_before ? before : beyond;

@@ -143,9 +143,13 @@ void FoliageStand::makeDepths(std::size_t instance, std::size_t axis) {
     beyond.push_back(own.beyond()[cell]);
     before.push_back(own.before()[cell]);
   }
+  std::size_t met = 0;
   index_.along(positions_[instance], reached(receiver.cells), own.axes().along,
                [&](std::uint32_t tree, const glm::vec3& displacement) {
                  if (tree == instance && displacement == glm::vec3(0.f)) return;
+                 if (++met % kMostSummed == 0)
+                   for (auto* sums : {&beyond, &before})
+                     for (std::int32_t& sum : *sums) sum = std::min(sum, std::int32_t{kDeepest});
                  const Prototype& source = prototypes_[placed_[tree].prototype];
                  source.axes[axis]->addTo(source.cells, own, receiver.cells, placed.prototype, displacement, 1, beyond,
                                           before);

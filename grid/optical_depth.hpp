@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace sunfleck {
@@ -10,6 +11,9 @@ namespace sunfleck {
 using FixedDepth = std::uint16_t;
 inline constexpr float kDepthSteps = 512.f;            // per leaf crossing
 inline constexpr std::uint32_t kDeepest = UINT16_MAX;  // a sum this deep or deeper
+
+// So many depths, and one more, add up to less than 2^31 steps.
+inline constexpr std::size_t kMostSummed = 32'767;
 
 constexpr FixedDepth fixedDepth(std::uint32_t steps) {
   return static_cast<FixedDepth>(steps < kDeepest ? steps : kDeepest);

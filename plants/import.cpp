@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/bounds.hpp"
 #include "core/require.hpp"
 #include "plants/detail/input_file.hpp"
 #include "plants/detail/leaf_or_wood.hpp"
@@ -11,6 +12,9 @@
 
 namespace sunfleck {
 namespace {
+
+// Smaller ones drown in the lengths that keep rays and maps from dividing by nothing, up to 1e-6 m.
+constexpr float kSmallestTree = 1e-4f;  // [m]
 
 std::string extensionOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -38,8 +42,12 @@ void toMetresZUp(std::vector<glm::vec3>& vertices, const ImportRules& rules) {
 ImportedTree importTree(const std::filesystem::path& path, const ImportRules& rules) {
   detail::validate(rules);
   const std::string source = detail::shown(path.string());
-  std::string text = detail::readWhole(path);
   const std::string extension = extensionOf(path);
+  if (extension == ".vdb" || extension == ".nvdb")
+    throw InvalidInput(source +
+                       ": holds grids and no leaves: a tree is an .obj or a .ply file (of grids, voxelize reads " +
+                       "a .vdb file)");
+  std::string text = detail::readWhole(path);
   ImportedTree tree;
   if (extension == ".obj")
     tree = detail::readObj(path, std::move(text), rules);
@@ -49,6 +57,9 @@ ImportedTree importTree(const std::filesystem::path& path, const ImportRules& ru
     throw InvalidInput(source + ": cannot be read: a tree is an .obj or a .ply file");
   toMetresZUp(tree.mesh.vertices, rules);
   tree.dropped = finish(tree.mesh, source);
+  const glm::vec3 size = bounds(tree.mesh).size();
+  require(std::max({size.x, size.y, size.z}) >= kSmallestTree, source + ": size of the tree [m]",
+          std::max({size.x, size.y, size.z}), "at least 1e-4; is the scale right?");
   return tree;
 }
 

@@ -104,6 +104,9 @@ refuses "garbage.vdb" voxelize garbage.vdb
 refuses "missing.vdb" voxelize missing.vdb
 refuses "--cell-size" voxelize leaf.obj -o x.vdb --cell-size 0
 refuses "cell" voxelize leaf.obj -o x.vdb --cell-size 1e-6
+refuses "/proc/x.vdb: cannot be written: No such file" voxelize leaf.obj -o /proc/x.vdb
+refuses "garbage.vdb: holds grids and no leaves" render garbage.vdb -o x.png
+refuses "size of the tree" validate leaf.obj --scale 1e-5
 refuses "unknown_key.toml:2" trace unknown_key.toml
 refuses "wrong_type.toml:2" trace wrong_type.toml
 refuses "out_of_range.toml:2" trace out_of_range.toml
@@ -252,6 +255,10 @@ refuses "excludes" slab --batch many.csv --omega 0.5
 
 does "COMMAND" --help
 does "zenith_deg" --help scene
+does "--exposure" --help render
+does "1 leaf (2 triangles)" validate leaf.obj --paths 1e3 --no-pictures --cells 1e1 --seed 2e0 -o report
+refuses "--cells" validate leaf.obj --cells 1.5e0
+refuses "--trees" bench stand --trees 1e1 -o dirs
 does "at most 1024 trees" --help scene
 does "Sunfleck" --version
 for command in validate slab tables plant voxelize trace render bench; do does "--json" $command --help; done
@@ -276,7 +283,25 @@ does "wrote" validate leaf.obj --paths 1000 --no-pictures -o report
 does "sky light" validate leaf.obj --paths 1000 --no-pictures -o report --stats
 does "cherry" bench stand --trees 16 -o benches --quiet
 does '"move_tree_seconds"' bench stand --trees 16 -o benches --quiet --json
+printf 'v 0 0 0\nv 0 1 0\nv 0 1 1\nusemtl leaf\nf 1 2 3\n' >upright.obj  # the sun does not see it
+# A map may be more than OpenGL reads at once, as it is in software: refused, with the option that says how large it is.
+printf "$square"'v 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\nusemtl leaf\nf 1 2 3 4\nf 5 6 7 8\n' >two.obj
+"$program" render two.obj --map 4096 --size 8 8 -o large.png >/dev/null 2>stderr.txt
+case $? in
+  0) ;;
+  2) grep -q -- "--map = 4096: the light's opacity map takes 268.4 MB" stderr.txt || fail "--map: $(cat stderr.txt)" ;;
+  *) fail "render --map 4096: $(cat stderr.txt)" ;;
+esac
+does '"rms_noise": null' validate upright.obj --paths 1000 --no-pictures -o report --json
+does "nothing to compare with" validate upright.obj --paths 1000 --no-pictures -o report
 [ -s report/report.html ] && [ -s report/report.json ] || fail "validate: no report"
+
+# The process that reads a .vdb file, and its limits.
+: >read.vdb
+"$program" read-grid leaf.vdb read.vdb 2000000000 60 || fail "read-grid: status $?"
+does "leaf area" voxelize read.vdb
+"$program" read-grid leaf.vdb read.vdb 1000 60 2>/dev/null && fail "read-grid: more than 1000 bytes"
+"$program" --help | grep -q read-grid && fail "read-grid is no command of the user's"
 
 head -c "$(($(stat -c %s leaf.vdb) / 2))" leaf.vdb >truncated.vdb
 refuses "truncated.vdb" voxelize truncated.vdb
@@ -361,6 +386,21 @@ for delay in 0.1 0.3 0.6 1 2; do
   status=$?
   case $status in 0 | 1 | 130) ;; *) fail "validate, interrupted after $delay s: status $status: $(head -c 400 stderr.txt)" ;; esac
 done
+# What is interrupted leaves no empty folder, and a second Ctrl-C no half file; both are heard while a picture is drawn.
+interrupts() {  # interrupts SECONDS ARGUMENTS...: Ctrl-C after that time
+  local delay=$1; shift
+  "$program" "$@" --quiet >/dev/null 2>stderr.txt &
+  local running=$!
+  sleep "$delay"
+  kill -INT $running
+  wait $running
+  [ $? -eq 1 ] || fail "$*, interrupted: not status 1: $(head -c 400 stderr.txt)"
+}
+trap - INT
+set -m  # or what runs behind does not hear of Ctrl-C
+interrupts 0.5 bench slab -o interrupted_bench
+[ ! -e interrupted_bench ] || fail "bench slab, interrupted: left a folder"
+set +m
 # A batch that is interrupted writes all (0) or nothing.
 for delay in 0.02 0.05 0.1; do
   timeout --preserve-status -s INT $delay "$program" slab --model spp --batch many.csv -o cut.csv >/dev/null 2>stderr.txt

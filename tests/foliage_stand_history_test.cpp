@@ -292,4 +292,40 @@ TEST(D4_FoliageStandHistory, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+// (D4) Check that more trees on a line than whole numbers of 32 bits could add up are as deep as any depth told, and
+// that those who come and go leave no trace: 33,000 trees of 128 leaves, met along the line they stand on.
+TEST(D4_FoliageStandHistory, HoldsManyTreesOnALine) {
+  FoliageStand stand({.axes = {{0.f, 0.f, 1.f}}, .sample_resolution = 2, .light_resolution = 2, .cells = 1});
+  stand.addPrototype(pile(128));
+  for (int i = 0; i < 33'000; ++i) stand.add(0, {0.f, 0.f, static_cast<float>(i)});
+  const std::size_t lowest = 0;
+  stand.prepareCompensation(std::span(&lowest, 1));
+  EXPECT_TRUE(std::ranges::all_of(stand.depths(0, 0), [](FixedDepth depth) { return depth == kDeepest; }));
+  EXPECT_TRUE(std::ranges::all_of(stand.depths(0, 1), [](FixedDepth depth) { return depth < kDeepest; }));
+}
+
+// (D4) Check that the time of sums that follow a moved tree stands with the depths that they are part of: with only a
+// light's depths to adjust, at none of the sample directions.
+TEST(D4_FoliageStandHistory, TellsWhatAdjustedTheTime) {
+  FoliageStand stand({.axes = {{0.f, 0.f, 1.f}}, .sample_resolution = 8, .light_resolution = 8, .cells = 2});
+  stand.addPrototype(crown(glm::vec3(1.f), 200, 1));
+  for (int i = 0; i < 12; ++i) stand.add(0, {12.f * static_cast<float>(i), 0.f, 0.f});
+  const Direction level{1.f, 0.f, 0.f};  // on which all trees stand; along the sample axis none meets another
+  stand.setLights(std::span(&level, 1));
+  stand.prepareCompensation(stand.allInstances());
+  const std::size_t others = 0;
+  const auto cost = [&](const std::string& name) {
+    const std::vector<ProductCost> costs = stand.costs();
+    return *std::ranges::find(costs, name, &ProductCost::name);
+  };
+  const ProductCost samples = cost("depths"), lights = cost("light depths");
+  stand.move(11, {133.f, 0.f, 0.f});
+  stand.prepareCompensation(std::span(&others, 1));  // of the moved tree itself nothing is made
+  EXPECT_EQ(cost("depths").made, samples.made);
+  EXPECT_EQ(cost("depths").adjusted, samples.adjusted);
+  EXPECT_EQ(cost("depths").seconds, samples.seconds);
+  EXPECT_EQ(cost("light depths").adjusted, lights.adjusted + 11);
+  EXPECT_GT(cost("light depths").seconds, lights.seconds);
+}
+
 }  // namespace

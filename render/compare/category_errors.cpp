@@ -58,13 +58,13 @@ ModelErrors modelErrors(std::span<const float> model, std::span<const double> re
           .bias = ratio(total, reference_total)};
 }
 
-double referenceNoise(std::span<const double> reference, std::span<const double> standard_error) {
+std::optional<double> referenceNoise(std::span<const double> reference, std::span<const double> standard_error) {
   double variance = 0., squares = 0.;
   for (std::size_t leaf = 0; leaf < reference.size(); ++leaf) {
     variance += standard_error[leaf] * standard_error[leaf];
     squares += reference[leaf] * reference[leaf];
   }
-  return squares > 0. ? std::sqrt(variance / squares) : 0.;
+  return squares > 0. ? std::optional(std::sqrt(variance / squares)) : std::nullopt;
 }
 
 }  // namespace sunfleck

@@ -31,6 +31,7 @@ ModelErrors modelErrors(std::span<const float> model, std::span<const double> re
                         std::span<const Category> categories);
 
 // RMS of the reference's own standard errors over its irradiances, per leaf: the part of rms_leaf that is noise.
-double referenceNoise(std::span<const double> reference, std::span<const double> standard_error);
+// Nothing when all are dark.
+std::optional<double> referenceNoise(std::span<const double> reference, std::span<const double> standard_error);
 
 }  // namespace sunfleck

@@ -131,7 +131,8 @@ std::string reportHtml(std::span<const Validation> validations, std::span<const 
       "leaves; per leaf "
       "holds the noise of Monte Carlo too. Total light is the error of the sum over all leaves. Prepare is done once "
       "per "
-      "placement of trees and sun, shade once per change of leaf optics.</p>\n";
+      "placement of trees and sun, without the maps that a scene before has left; shade once per change of leaf "
+      "optics.</p>\n";
   html += "<h2>Light inside the crown</h2>\n<div class=\"side\">";
   for (const Validation& v : validations) html += depthPlot(v);
   html += "</div>\n";

@@ -26,10 +26,14 @@ void add(Json& json, const Validation& v) {
                    {"albedo", v.optics().albedo()},
                    {"sun_zenith_deg", double{v.scene.sun_zenith} * degrees},
                    {"wood", v.effort.with_wood}};
-  json["reference"] = {{"paths", v.reference.paths},        {"seed", v.effort.trace.seed},
-                       {"seconds", v.reference.seconds},    {"cpu_seconds", v.reference.cpu_seconds},
-                       {"rms_noise", v.reference_noise},    {"rms_noise_weighted", v.category_noise},
-                       {"categories", v.categories.size()}, {"leaves_left_out", v.leaves_left_out}};
+  json["reference"] = {{"paths", v.reference.paths},
+                       {"seed", v.effort.trace.seed},
+                       {"seconds", v.reference.seconds},
+                       {"cpu_seconds", v.reference.cpu_seconds},
+                       {"rms_noise", orNull(v.reference_noise)},
+                       {"rms_noise_weighted", orNull(v.category_noise)},
+                       {"categories", v.categories.size()},
+                       {"leaves_left_out", v.leaves_left_out}};
   Json models = Json::array();
   for (const ModelResult& m : v.models)
     models.push_back({{"name", nameOf(m.model)},

@@ -15,7 +15,7 @@ double mean(const std::vector<float>& values) {
 }
 
 // Noise of category means adds in squares over their leaves.
-double categoryNoise(const ForwardResult& reference, std::span<const Category> categories) {
+std::optional<double> categoryNoise(const ForwardResult& reference, std::span<const Category> categories) {
   double variance = 0., squares = 0.;
   for (const Category& category : categories) {
     double sum = 0., sum_variance = 0.;
@@ -27,7 +27,7 @@ double categoryNoise(const ForwardResult& reference, std::span<const Category> c
     variance += sum_variance / n;
     squares += sum * sum / n;
   }
-  return squares > 0. ? std::sqrt(variance / squares) : 0.;
+  return squares > 0. ? std::optional(std::sqrt(variance / squares)) : std::nullopt;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ struct Validation {
   double mean_depth = 0., mean_thickness = 0.;  // over leaves [1]
   double leaf_area = 0.;                        // one-sided, of the prototype [m^2]
   ForwardResult reference;
-  double reference_noise = 0.;  // see referenceNoise()
-  double category_noise = 0.;   // expected rms_weighted of a perfect model, from the reference's standard errors
+  std::optional<double> reference_noise;  // see referenceNoise()
+  // Expected rms_weighted of a perfect model, from the reference's standard errors; nothing when all is dark.
+  std::optional<double> category_noise;
   std::vector<Category> categories;
   std::size_t leaves_left_out = 0;  // in categories of fewer than 5
   std::vector<ModelResult> models;

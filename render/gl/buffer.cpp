@@ -25,13 +25,16 @@ Buffer::Buffer(std::span<const std::byte> content) : name_(created()), bytes_(co
   glNamedBufferStorage(name_.get(), static_cast<GLsizeiptr>(content.size()), content.data(), 0);
 }
 
-void Buffer::bindStorage(unsigned binding) const {
+std::size_t Buffer::largestStorage() {
   GLint64 most = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-  if (static_cast<GLint64>(bytes_) > most)
-    throw std::runtime_error("the tree's opacity map needs " + std::to_string(bytes_) +
-                             " bytes in one piece, and OpenGL allows " + std::to_string(most) +
-                             ": a map of lower resolution would fit");
+  return static_cast<std::size_t>(std::max(most, GLint64{0}));
+}
+
+void Buffer::bindStorage(unsigned binding) const {
+  if (bytes_ > largestStorage())
+    throw std::runtime_error("a picture needs " + std::to_string(bytes_) + " bytes in one piece, and OpenGL allows " +
+                             std::to_string(largestStorage()));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_.get());
 }
 

@@ -19,6 +19,7 @@ class Buffer {
   explicit Buffer(const std::vector<T>& values) : Buffer(std::span<const T>(values)) {}
   explicit Buffer(std::span<const std::byte> content);
 
+  static std::size_t largestStorage();  // that shaders of the current context may read [byte]
   // Binds it for all shaders. Throws std::runtime_error when it is larger than the driver lets a shader read.
   void bindStorage(unsigned binding) const;
   void bindUniform(unsigned binding) const;

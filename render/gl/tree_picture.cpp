@@ -1,11 +1,14 @@
 #include "render/gl/tree_picture.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "core/require.hpp"
+#include "render/gl/buffer.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/tree_renderer.hpp"
 
@@ -35,9 +38,19 @@ void requireFitting(const Scene& scene, const ShadingData& data, Model model) {
   if (!fits) throw std::invalid_argument("treePicture: G is not given for every cell of every tree");
 }
 
+void requireRoom(const SunMap& map) {
+  const std::size_t bytes = std::max(map.crossings.size_bytes(), map.first.size_bytes());
+  if (bytes <= Buffer::largestStorage()) return;
+  std::ostringstream why;
+  why.precision(4);
+  why << "the light's opacity map takes " << 1e-6 * static_cast<double>(bytes) << " MB in one piece: must be at most "
+      << 1e-6 * static_cast<double>(Buffer::largestStorage()) << " MB for this OpenGL";
+  throw MapTooLarge(why.str());
+}
+
 }  // namespace
 
-Image treePicture(const Scene& scene, const ShadingData& data, Model model) {
+Image treePicture(const Scene& scene, const ShadingData& data, Model model, const Progress& progress) {
   const Camera camera = cameraOf(scene);
   requireDrawable(scene, camera);
   requireFitting(scene, data, model);
@@ -56,7 +69,8 @@ Image treePicture(const Scene& scene, const ShadingData& data, Model model) {
              .size = data.cells->size,
              .values = data.compensation};
   const Context context;
-  return TreeRenderer(context, scene, sun, cells).picture(camera, model);
+  requireRoom(sun);
+  return TreeRenderer(context, scene, sun, cells).picture(camera, model, progress);
 }
 
 }  // namespace sunfleck::gl

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "core/image.hpp"
+#include "core/progress.hpp"
 #include "grid/cell_grid.hpp"
 #include "grid/deep_opacity_map.hpp"
 #include "render/model.hpp"
@@ -18,10 +20,15 @@ struct ShadingData {
   std::vector<std::span<const float>> compensation;  // G per cell, for each tree of the stand; for sppg alone
 };
 
+// The sun's opacity map is more than this OpenGL lets a shader read.
+struct MapTooLarge : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 // (R3) The scene as the GPU shades it: leaves, wood and a disc of ground by the model, seen by the scene's camera
 // before a black sky. A periodic stand is drawn with one ring of copies; ground of albedo 0 in all bands is left out.
 // Channels R, G, B: linear radiance; A: coverage. Needs no display. Throws InvalidInput on a camera that sees nothing
-// or a rotated tree, and std::runtime_error when there is no OpenGL 4.5.
-Image treePicture(const Scene& scene, const ShadingData& data, Model model);
+// or a rotated tree, MapTooLarge, and std::runtime_error when there is no OpenGL 4.5 or `progress` ends it.
+Image treePicture(const Scene& scene, const ShadingData& data, Model model, const Progress& progress = {});
 
 }  // namespace sunfleck::gl

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <stdexcept>
 
 #include "grid/neighbours.hpp"
 #include "render/gl/buffer.hpp"
@@ -266,7 +267,7 @@ void addTile(Image& image, const std::vector<float>& samples, int width, glm::iv
 
 }  // namespace
 
-Image TreeRenderer::picture(const Camera& camera, Model model) const {
+Image TreeRenderer::picture(const Camera& camera, Model model, const Progress& progress) const {
   const Resources& r = *resources_;
   const Axes axes = viewAxes(camera);
   FrameData frame = r.frame;
@@ -285,6 +286,8 @@ Image TreeRenderer::picture(const Camera& camera, Model model) const {
                              static_cast<std::size_t>(kSamples * tile.y));
   for (int y = 0; y < camera.height; y += tile.y)
     for (int x = 0; x < camera.width; x += tile.x) {
+      const float rows_done = static_cast<float>(y) + static_cast<float>(tile.y * x) / static_cast<float>(camera.width);
+      if (!goOn(progress, double{rows_done} / camera.height)) throw std::runtime_error("interrupted");
       frame.clip_from_world = clipFromWorld(camera, {x, y}, tile, reach);
       r.draw(frame, target, with_ground);
       target.read(samples);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image.hpp"
+#include "core/progress.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/sun_map.hpp"
 #include "render/model.hpp"
@@ -32,7 +33,8 @@ class TreeRenderer {
 
   // Channels R, G, B: linear radiance [W m^-2 sr^-1 per W m^-2 of sun], the mean over each pixel of 2 x 2 samples; A:
   // coverage [1]. The same picture is the same bits on the same driver.
-  Image picture(const Camera& camera, Model model) const;
+  // Throws std::runtime_error("interrupted") when `progress` ends it.
+  Image picture(const Camera& camera, Model model, const Progress& progress = {}) const;
 
  private:
   struct Resources;
