@@ -56,6 +56,7 @@ Scene readScene(const SceneOptions& options) {
   if (options.sun_zenith_deg) scene.sun_zenith = glm::radians(*options.sun_zenith_deg);
   if (options.sun_azimuth_deg) scene.sun_azimuth = glm::radians(*options.sun_azimuth_deg);
   if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);
+  intoOnePeriod(scene.stand);
   return scene;
 }
 

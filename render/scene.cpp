@@ -35,6 +35,16 @@ Bounds standing(const TreeMesh& tree, const Bounds& prototype, const Placement& 
 
 }  // namespace
 
+void intoOnePeriod(Stand& stand) {
+  if (!stand.period) return;
+  glm::vec2 low(stand.trees.front().position);
+  for (const Placement& tree : stand.trees) low = glm::min(low, glm::vec2(tree.position));
+  for (Placement& tree : stand.trees) {
+    const glm::vec2 periods = glm::floor((glm::vec2(tree.position) - low) / *stand.period);
+    tree.position -= glm::vec3(periods * *stand.period, 0.f);
+  }
+}
+
 Bounds bounds(const Scene& scene) {
   const Bounds prototype = bounds(*scene.tree);
   Bounds box;

@@ -44,6 +44,10 @@ struct Scene {
   Direction sun() const { return sunlight(sun_zenith, sun_azimuth); }
 };
 
+// Moves trees of a periodic stand by whole periods where they are spread over more than one: the stand is the same, and
+// all its trees stand together.
+void intoOnePeriod(Stand& stand);
+
 Bounds bounds(const Scene& scene);    // of all trees of the stand [m]
 Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
 // The camera moved and widened so that the whole stand fills its picture; direction and pixels stay.

@@ -86,6 +86,7 @@ void readStand(Scene& scene, detail::SceneTable stand) {
     throw InvalidInput(scene.name + ": stand.kind = \"" + kind + "\": must be single, periodic, grid or positions");
   }
   stand.done();
+  intoOnePeriod(scene.stand);
 }
 
 void readOptics(Scene& scene, detail::SceneTable leaf, detail::SceneTable wood, detail::SceneTable ground) {

@@ -104,6 +104,30 @@ TreeMesh twoLeaves() {
   return mesh;
 }
 
+// Check that a signal's handler can remove what is half written, and does no harm when nothing is.
+TEST(WholeFile, IsRemovedUnfinished) {
+  const fs::path folder = fs::temp_directory_path() / ("sunfleck_unfinished_" + std::to_string(::getpid()));
+  fs::create_directory(folder);
+  const auto files = [&] { return std::distance(fs::directory_iterator(folder), fs::directory_iterator{}); };
+  removeUnfinished();
+  EXPECT_THROW(writeWhole(folder / "a.txt",
+                          [&](const fs::path& temporary) {
+                            std::ofstream(temporary) << "half";
+                            EXPECT_EQ(files(), 1);
+                            removeUnfinished();
+                            EXPECT_EQ(files(), 0);
+                            throw std::runtime_error("ended");
+                          }),
+               std::runtime_error);
+  writeWhole(folder / "b.txt", "whole");
+  removeUnfinished();
+  EXPECT_EQ(files(), 1);
+  // A place that takes no file is known before the work.
+  EXPECT_THROW(requireWritable("/proc/x.txt"), InvalidInput);
+  EXPECT_THROW(requireWritable(folder / std::string(250, 'x')), InvalidInput);
+  fs::remove_all(folder);
+}
+
 }  // namespace
 
 // Check that leaves are told apart by shared vertices, whatever the order of their triangles, and that areas are exact.

@@ -146,4 +146,22 @@ TEST_F(SceneFile, StandsOfSeveralTreesShareTheirLight) {
   EXPECT_THROW(updated(), InvalidInput);
 }
 
+// Check that trees of a periodic stand that are written a whole number of periods apart come together, so that the
+// camera that shows them all shows one period; and that trees within one period stay where they are.
+TEST_F(SceneFile, PlacesPeriodicTreesInOnePeriod) {
+  write("tree.obj", kSquare);
+  const auto positions = [&](const std::string& list) {
+    std::vector<float> all;
+    for (const Placement& tree : readScene(write("s.toml",
+                                                 "[tree]\nfile = \"tree.obj\"\n[stand]\nkind = \"periodic\"\n"
+                                                 "period = [8, 4]\npositions = [" +
+                                                     list + "]\n"))
+                                     .stand.trees)
+      all.insert(all.end(), {tree.position.x, tree.position.y});
+    return all;
+  };
+  EXPECT_EQ(positions("[-1, 2], [803, -18], [7, 2]"), (std::vector<float>{-1, -18, 3, -18, -1, -18}));
+  EXPECT_EQ(positions("[-1, 2], [6.5, -1.5]"), (std::vector<float>{-1, 2, 6.5, -1.5}));
+}
+
 }  // namespace
