@@ -49,7 +49,7 @@ std::vector<Scene> scenesOf(const ValidateOptions& options, const Scene& given) 
   if (stand == "given") return {given};
   Scene single = given, periodic = given;
   single.stand = Stand{};
-  periodic.stand = {.period = given.stand.period.value_or(touchingPeriod(*given.kinds[0].mesh))};
+  periodic.stand = {.period = given.stand.period.value_or(touchingPeriod(given))};
   if (stand == "single") return {single};
   if (stand == "periodic") return {periodic};
   return {single, periodic};

@@ -40,6 +40,7 @@ struct TreeKind {
 // What is simulated: kinds of trees, where they stand, the ground and the sun.
 struct Scene {
   std::string name;
+  std::string origin;                       // the file or the name it was read from, with which messages begin
   std::vector<TreeKind> kinds{TreeKind{}};  // at least one; of each stands a tree
   Stand stand;
   glm::vec3 ground_albedo{0.f};  // Lambertian, per band [1], 0 .. 1
