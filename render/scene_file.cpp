@@ -18,88 +18,132 @@
 namespace sunfleck {
 namespace {
 
+// Blossoming cherry and autumn maple reflect and pass nearly all light; `albedo` of the paper's experiment.
+constexpr LeafOptics kPaperLeaf{.reflectance = 0.475f, .transmittance = 0.475f};
+
+// Without a tree yet.
+TreeKind kindWith(const LeafOptics& leaf) {
+  TreeKind kind;
+  kind.leaf.fill(leaf);
+  return kind;
+}
+
 float degrees(detail::SceneTable& table, const std::string& key, double low, double high, const std::string& rule) {
   return glm::radians(static_cast<float>(table.number(key, 0., low, high, rule)));
 }
 
-void growTree(Scene& scene, const std::string& species_name, std::uint64_t seed) {
-  scene.tree = std::make_shared<const TreeMesh>(grow(species(species_name), seed));
-  scene.source = fmt::format("species {}, seed {}", species_name, seed);
+void growTree(TreeKind& kind, const std::string& species_name, std::uint64_t seed) {
+  kind.mesh = std::make_shared<const TreeMesh>(grow(species(species_name), seed));
+  kind.source = fmt::format("species {}, seed {}", species_name, seed);
+  kind.name = species_name;
 }
 
-void importFile(Scene& scene, const std::filesystem::path& file, const ImportRules& rules) {
+void importFile(TreeKind& kind, const std::filesystem::path& file, const ImportRules& rules) {
   ImportedTree imported = importTree(file, rules);
-  scene.tree = std::make_shared<const TreeMesh>(std::move(imported.mesh));
-  scene.source = fmt::format("{} (leaf and wood: {})", file.string(), imported.how);
-  scene.dropped = imported.dropped;
+  kind.mesh = std::make_shared<const TreeMesh>(std::move(imported.mesh));
+  kind.source = fmt::format("{} (leaf and wood: {})", file.string(), imported.how);
+  kind.dropped = imported.dropped;
+  kind.name = file.stem().string();
 }
 
-// `side` x `side` trees, `spacing` apart, around the origin.
-std::vector<Placement> square(int side, glm::vec2 spacing) {
+// `side` x `side` trees, `spacing` apart, around the origin. Kinds take turns along x and along y.
+std::vector<Placement> square(int side, glm::vec2 spacing, std::size_t kinds) {
   std::vector<Placement> trees;
   for (int row = 0; row < side; ++row)
     for (int column = 0; column < side; ++column) {
       const glm::vec2 at = spacing * (glm::vec2(static_cast<float>(column), static_cast<float>(row)) -
                                       0.5f * static_cast<float>(side - 1));
-      trees.push_back({.position = {at, 0.f}});
+      trees.push_back(
+          {.position = {at, 0.f}, .kind = static_cast<std::uint32_t>(static_cast<std::size_t>(row + column) % kinds)});
     }
   return trees;
 }
 
-void readTree(Scene& scene, detail::SceneTable tree, const std::filesystem::path& folder) {
+// Optics of leaves and wood: those of the table, under these keys, or else those that the kind has already.
+void readOptics(TreeKind& kind, detail::SceneTable& leaf, const std::string& leaf_prefix, detail::SceneTable& wood,
+                const std::string& wood_prefix) {
+  glm::vec3 reflectance, transmittance;
+  for (int band = 0; band < kBands; ++band) {
+    reflectance[band] = kind.leaf[static_cast<std::size_t>(band)].reflectance;
+    transmittance[band] = kind.leaf[static_cast<std::size_t>(band)].transmittance;
+  }
+  reflectance = leaf.perBand(leaf_prefix + "reflectance", reflectance);
+  transmittance = leaf.perBand(leaf_prefix + "transmittance", transmittance);
+  for (int band = 0; band < kBands; ++band) {
+    LeafOptics& optics = kind.leaf[static_cast<std::size_t>(band)];
+    optics = {.reflectance = reflectance[band], .transmittance = transmittance[band]};
+    validate(optics);
+  }
+  kind.wood_reflectance = wood.perBand(wood_prefix + "reflectance", kind.wood_reflectance);
+}
+
+// `kind` has the scene's optics.
+void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const std::filesystem::path& folder) {
   if (tree.has("file") && tree.has("species"))
-    throw InvalidInput(scene.name + ": [tree] has both file and species: must be one of them");
+    throw InvalidInput(scene.origin + ": [tree] has both file and species: must be one of them");
   if (tree.has("file")) {
     ImportRules rules;
     if (tree.has("leaf")) rules.leaf = {tree.text("leaf", "")};
     if (tree.has("wood")) rules.wood = {tree.text("wood", "")};
     rules.scale = static_cast<float>(tree.number("scale", 1., 1e-9, 1e9, "in [1e-9, 1e9]"));
     const std::string up = tree.text("up", "z");
-    if (up != "z" && up != "y") throw InvalidInput(scene.name + ": tree.up = \"" + up + "\": must be \"z\" or \"y\"");
+    if (up != "z" && up != "y") throw InvalidInput(scene.origin + ": tree.up = \"" + up + "\": must be \"z\" or \"y\"");
     rules.up = up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
-    importFile(scene, folder / tree.text("file", ""), rules);
+    importFile(kind, folder / tree.text("file", ""), rules);
   } else {
     const std::string name = tree.text("species", "cherry");
-    growTree(scene, name, static_cast<std::uint64_t>(tree.count("seed", 1, std::numeric_limits<int>::max())));
+    growTree(kind, name, static_cast<std::uint64_t>(tree.count("seed", 1, std::numeric_limits<int>::max())));
   }
+  kind.name = tree.text("name", kind.name);
+  readOptics(kind, tree, "leaf_", tree, "wood_");
   tree.done();
+}
+
+void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, const std::filesystem::path& file) {
+  const toml::array* several = node ? node->as_array() : nullptr;  // [[tree]]
+  const std::size_t count = several ? several->size() : 1;
+  if (count == 0) throw InvalidInput(scene.origin + ": tree = []: must be a table [tree], or a [[tree]] for each kind");
+  scene.kinds.assign(count, optics);
+  for (std::size_t i = 0; i < count; ++i) {
+    const toml::node* table = several ? several->get(i) : node;
+    readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), file.parent_path());
+    for (std::size_t before = 0; before < i; ++before)
+      if (scene.kinds[before].name == scene.kinds[i].name)
+        throw InvalidInput(fmt::format("{}:{}: tree.name = \"{}\": must differ from that of the other kinds of trees",
+                                       file.string(), table->source().begin.line, scene.kinds[i].name));
+  }
 }
 
 void readStand(Scene& scene, detail::SceneTable stand) {
   const std::string kind = stand.text("kind", "single");
-  const glm::vec2 touching = touchingPeriod(*scene.tree);
+  const glm::vec2 touching = touchingPeriod(scene);
   const auto sides = [&](const std::string& key) {
     if (!stand.has(key)) return touching;
     const auto v = stand.numbers(key, 2, 1e-6, 1e6, "two lengths in [1e-6, 1e6] m: [x, y]");
     return glm::vec2(static_cast<float>(v[0]), static_cast<float>(v[1]));
   };
   if (kind == "periodic") {
-    if (stand.has("positions")) scene.stand.trees = stand.placements("positions");
+    if (stand.has("positions")) scene.stand.trees = stand.placements("positions", scene.kinds);
     scene.stand.period = sides("period");
   } else if (kind == "grid") {
-    scene.stand.trees = square(stand.count("side", 4, 100), sides("spacing"));
+    scene.stand.trees = square(stand.count("side", 4, 100), sides("spacing"), scene.kinds.size());
   } else if (kind == "positions") {
     if (!stand.has("positions"))
-      throw InvalidInput(scene.name + ": [stand] of kind \"positions\" has no key positions");
-    scene.stand.trees = stand.placements("positions");
+      throw InvalidInput(scene.origin + ": [stand] of kind \"positions\" has no key positions");
+    scene.stand.trees = stand.placements("positions", scene.kinds);
   } else if (kind != "single") {
-    throw InvalidInput(scene.name + ": stand.kind = \"" + kind + "\": must be single, periodic, grid or positions");
+    throw InvalidInput(scene.origin + ": stand.kind = \"" + kind + "\": must be single, periodic, grid or positions");
   }
   stand.done();
   intoOnePeriod(scene.stand);
-}
-
-void readOptics(Scene& scene, detail::SceneTable leaf, detail::SceneTable wood, detail::SceneTable ground) {
-  const glm::vec3 reflectance = leaf.perBand("reflectance", 0.475f);
-  const glm::vec3 transmittance = leaf.perBand("transmittance", 0.475f);
-  for (int band = 0; band < kBands; ++band) {
-    scene.leaf[static_cast<std::size_t>(band)] = {.reflectance = reflectance[band],
-                                                  .transmittance = transmittance[band]};
-    validate(scene.leaf[static_cast<std::size_t>(band)]);
-  }
-  scene.wood_reflectance = wood.perBand("reflectance", 0.3f);
-  scene.ground_albedo = ground.perBand("albedo", 0.f);
-  for (const detail::SceneTable* table : {&leaf, &wood, &ground}) table->done();
+  std::vector<char> stands(scene.kinds.size());
+  for (const Placement& tree : scene.stand.trees) stands[tree.kind] = true;
+  for (std::size_t i = 0; i < stands.size(); ++i)
+    if (!stands[i])
+      throw InvalidInput(fmt::format(
+          "{}: [stand] has no place for a tree of kind \"{}\": must have a tree of each of the {} kinds, in positions "
+          "or in a grid",
+          scene.origin, scene.kinds[i].name, scene.kinds.size()));
 }
 
 void readCamera(Scene& scene, detail::SceneTable camera) {
@@ -126,12 +170,16 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
       throw InvalidInput(fmt::format("{}:{}: unknown key \"{}\"; see: sunfleck --help scene", file.string(),
                                      node.source().begin.line, key.str()));
   }
-  const auto section = [&](const char* name) { return detail::SceneTable(table, file.string(), name); };
+  const auto section = [&](const char* name) { return detail::SceneTable(table.get(name), file.string(), name); };
   Scene scene;
-  scene.name = file.string();  // until all is read: messages name the file
-  readTree(scene, section("tree"), file.parent_path());
+  scene.origin = file.string();
+  detail::SceneTable leaf = section("leaf"), wood = section("wood"), ground = section("ground");
+  TreeKind optics = kindWith(kPaperLeaf);
+  readOptics(optics, leaf, "", wood, "");
+  scene.ground_albedo = ground.perBand("albedo", glm::vec3(0.f));
+  for (const detail::SceneTable* read : {&leaf, &wood, &ground}) read->done();
+  readTrees(scene, table.get("tree"), optics, file);
   readStand(scene, section("stand"));
-  readOptics(scene, section("leaf"), section("wood"), section("ground"));
   detail::SceneTable sun = section("sun");
   scene.sun_zenith = degrees(sun, "zenith_deg", 0., 89.9, "in [0, 89.9]");
   scene.sun_azimuth = degrees(sun, "azimuth_deg", -360., 360., "in [-360, 360]");
@@ -175,17 +223,15 @@ Scene readToml(const std::filesystem::path& file) {
   }
 }
 
-// Blossoming cherry and autumn maple reflect and pass nearly all light; `albedo` of the paper's experiment.
-constexpr LeafOptics kPaperLeaf{.reflectance = 0.475f, .transmittance = 0.475f};
-
 std::optional<Scene> builtin(const std::string& name) {
   Scene scene;
-  scene.name = name;
-  scene.leaf.fill(kPaperLeaf);
+  scene.name = scene.origin = name;
+  TreeKind& kind = scene.kinds[0] = kindWith(kPaperLeaf);
   if (name == "slab") {
     const RandomLayer layer{};
-    scene.tree = std::make_shared<const TreeMesh>(randomLayer(layer, 1));
-    scene.source = fmt::format("random square leaves, LAI {}, seed 1", layer.leaf_area_index);
+    kind.mesh = std::make_shared<const TreeMesh>(randomLayer(layer, 1));
+    kind.name = name;
+    kind.source = fmt::format("random square leaves, LAI {}, seed 1", layer.leaf_area_index);
     scene.stand.period = layer.size;
     return scene;
   }
@@ -194,17 +240,21 @@ std::optional<Scene> builtin(const std::string& name) {
   const std::vector<std::string> known = speciesNames();
   if (std::find(known.begin(), known.end(), plant) == known.end()) return std::nullopt;
   if (copies != "" && copies != "1" && copies != "16" && copies != "64") return std::nullopt;
-  growTree(scene, plant, 1);
-  if (copies == "16" || copies == "64") scene.stand.trees = square(copies == "16" ? 4 : 8, touchingPeriod(*scene.tree));
-  if (name == "periodic") scene.stand.period = touchingPeriod(*scene.tree);
+  growTree(kind, plant, 1);
+  if (copies == "16" || copies == "64") scene.stand.trees = square(copies == "16" ? 4 : 8, touchingPeriod(scene), 1);
+  if (name == "periodic") scene.stand.period = touchingPeriod(scene);
   return scene;
 }
 
 }  // namespace
 
-glm::vec2 touchingPeriod(const TreeMesh& tree) {
-  const glm::vec3 size = leafBounds(tree).size();
-  return glm::max(glm::vec2(size), glm::vec2(0.15f * std::max({size.x, size.y, size.z})));
+glm::vec2 touchingPeriod(const Scene& scene) {
+  glm::vec2 period(0.f);
+  for (const TreeKind& kind : scene.kinds) {
+    const glm::vec3 size = leafBounds(*kind.mesh).size();
+    period = glm::max(period, glm::max(glm::vec2(size), glm::vec2(0.15f * std::max({size.x, size.y, size.z}))));
+  }
+  return period;
 }
 
 std::vector<std::string> builtinScenes() {
@@ -220,8 +270,9 @@ Scene readScene(const std::string& name_or_file, const ImportRules& rules) {
   if (file.has_extension()) {
     Scene scene;
     scene.name = file.stem().string();
-    scene.leaf.fill(kPaperLeaf);
-    importFile(scene, file, rules);
+    scene.origin = file.string();
+    scene.kinds[0] = kindWith(kPaperLeaf);
+    importFile(scene.kinds[0], file, rules);
     return scene;
   }
   if (std::optional<Scene> scene = builtin(name_or_file)) return *scene;
@@ -243,13 +294,20 @@ seed = 1
 # wood = "bark*"              # ... and those that are wood; told by their names if not given
 # scale = 1.0                 # metres per unit of the file, above 0
 # up = "z"                    # the file's upward axis: "z" or "y"
+# name = "cherry"             # what positions call it; the species' or the file's name if not given
+# leaf_reflectance = 0.475    # its own optics, if not those of [leaf] and [wood]
+# leaf_transmittance = 0.475
+# wood_reflectance = 0.3
+# Several kinds of trees: a [[tree]] with these keys for each, instead of [tree]; names must differ, and of each kind
+# stands one tree at least. Trees of a grid take the kinds in turn along x and along y.
 
 [stand]
 kind = "single"               # single | periodic | grid | positions
 # period = [8.0, 8.0]         # periodic: sides of the repeated rectangle; the leaves' box if not given
 # side = 4                    # grid: side x side trees, 1 to 100 ...
 # spacing = [8.0, 8.0]        # ... this far apart; the leaves' box if not given
-# positions = [[0, 0], [5, 1, 30]]   # positions, periodic: x, y and rotation_deg of each tree
+# positions = [[0, 0], [5, 1, 30]]   # positions, periodic: x, y and rotation_deg of each tree, and at the end the
+                              # name of its kind, as in [5, 1, 30, "cherry"]; without one, trees take the kinds in turn
 # trace takes all stands; validate and render take at most 1024 trees, none rotated, 64 in the space of one
 
 [leaf]                        # Lambertian on both sides; reflectance + transmittance at most 1

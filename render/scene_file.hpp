@@ -19,8 +19,8 @@ std::vector<std::string> builtinScenes();
 // Every key of a scene file with its unit, range and default, for people.
 std::string sceneFileHelp();
 
-// Side lengths of the rectangle in which a tree touches its own copies: those of its leaves' box, and no less than a
-// seventh of its longest [m].
-glm::vec2 touchingPeriod(const TreeMesh& tree);
+// Side lengths of the rectangle in which the widest trees touch their own copies: those of their leaves' box, and no
+// less than a seventh of its longest [m].
+glm::vec2 touchingPeriod(const Scene& scene);
 
 }  // namespace sunfleck

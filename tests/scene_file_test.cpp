@@ -75,16 +75,16 @@ width = 64
 height = 32
 )"));
   EXPECT_EQ(scene.name, "A name");
-  EXPECT_EQ(scene.tree->leaf_count, 1u);
-  EXPECT_DOUBLE_EQ(leafArea(*scene.tree), 8.);
+  EXPECT_EQ(scene.kinds[0].mesh->leaf_count, 1u);
+  EXPECT_DOUBLE_EQ(leafArea(*scene.kinds[0].mesh), 8.);
   ASSERT_TRUE(scene.stand.period);
   EXPECT_EQ(*scene.stand.period, glm::vec2(7.f, 8.f));
   ASSERT_EQ(scene.stand.trees.size(), 2u);
   EXPECT_EQ(scene.stand.trees[1].position, glm::vec3(3.f, 4.f, 0.f));
   EXPECT_NEAR(scene.stand.trees[1].rotation, 1.5707963f, 1e-6f);
-  EXPECT_FLOAT_EQ(scene.leaf[2].reflectance, 0.3f);
-  EXPECT_FLOAT_EQ(scene.leaf[2].transmittance, 0.4f);
-  EXPECT_EQ(scene.wood_reflectance, glm::vec3(0.25f));
+  EXPECT_FLOAT_EQ(scene.kinds[0].leaf[2].reflectance, 0.3f);
+  EXPECT_FLOAT_EQ(scene.kinds[0].leaf[2].transmittance, 0.4f);
+  EXPECT_EQ(scene.kinds[0].wood_reflectance, glm::vec3(0.25f));
   EXPECT_EQ(scene.ground_albedo, glm::vec3(0.5f, 0.6f, 0.7f));
   EXPECT_NEAR(scene.sun().y, -std::sqrt(0.75f), 1e-6f);  // from +y, 60 degrees from overhead
   EXPECT_NEAR(scene.sun().z, -0.5f, 1e-6f);
@@ -93,6 +93,67 @@ height = 32
   EXPECT_NEAR(scene.camera->elevation, 0.5235988f, 1e-6f);
   EXPECT_EQ(scene.camera->half_width, 2.5f);
   EXPECT_EQ(scene.camera->height, 32);
+}
+
+// Check several kinds of trees: each with its name, its source, its optics or those of the scene; named by positions or
+// taken in turn.
+TEST_F(SceneFile, HoldsSeveralKinds) {
+  write("oak.obj", kSquare);
+  const std::string kinds = R"(
+[[tree]]
+species = "cherry"
+leaf_transmittance = 0.25
+[[tree]]
+file = "oak.obj"
+leaf_reflectance = [0.1, 0.2, 0.3]
+wood_reflectance = 0.125
+[[tree]]
+species = "cherry"
+seed = 2
+name = "second cherry"
+[leaf]
+reflectance = 0.5
+transmittance = 0.375
+)";
+  const Scene scene = readScene(write("s.toml", kinds + R"(
+[stand]
+kind = "positions"
+positions = [[0, 0], [9, 0, 90, "second cherry"], [18, 0, "cherry"], [27, 0], [36, 0, 45], [45, 0, "oak"]]
+)"));
+  ASSERT_EQ(scene.kinds.size(), 3u);
+  EXPECT_EQ(scene.kinds[0].name, "cherry");
+  EXPECT_EQ(scene.kinds[1].name, "oak");
+  EXPECT_EQ(scene.kinds[1].mesh->leaf_count, 1u);
+  EXPECT_EQ(scene.kinds[2].source, "species cherry, seed 2");
+  EXPECT_EQ(scene.kinds[0].leaf[2].reflectance, 0.5f);
+  EXPECT_EQ(scene.kinds[0].leaf[2].transmittance, 0.25f);
+  EXPECT_EQ(scene.kinds[1].leaf[2].reflectance, 0.3f);
+  EXPECT_EQ(scene.kinds[1].leaf[2].transmittance, 0.375f);
+  EXPECT_EQ(scene.kinds[1].wood_reflectance, glm::vec3(0.125f));
+  EXPECT_EQ(scene.kinds[2].wood_reflectance, glm::vec3(0.3f));
+  std::vector<std::uint32_t> kind_of_tree;
+  for (const Placement& tree : scene.stand.trees) kind_of_tree.push_back(tree.kind);
+  EXPECT_EQ(kind_of_tree, (std::vector<std::uint32_t>{0, 2, 0, 0, 1, 1}));
+  EXPECT_NEAR(scene.stand.trees[1].rotation, 1.5707963f, 1e-6f);
+  EXPECT_EQ(bounds(scene).high.x, std::max(47.f, bounds(scene).high.x));
+
+  const Scene grid = readScene(write("s.toml", kinds + "[stand]\nkind = \"grid\"\nside = 2\n"));
+  kind_of_tree.clear();
+  for (const Placement& tree : grid.stand.trees) kind_of_tree.push_back(tree.kind);
+  EXPECT_EQ(kind_of_tree, (std::vector<std::uint32_t>{0, 1, 1, 2}));
+
+  EXPECT_EQ(refusal(kinds),
+            "s.toml: [stand] has no place for a tree of kind \"oak\": must have a tree of each of the 3 kinds, in "
+            "positions or in a grid");
+  EXPECT_EQ(refusal(kinds + "[stand]\nkind = \"positions\"\npositions = [[0, 0, \"elm\"]]\n"),
+            "s.toml:18: stand.positions = 'elm': must be the name of a kind of tree: \"cherry\", \"oak\", \"second "
+            "cherry\"");
+  EXPECT_NE(refusal(kinds + "[stand]\nkind = \"positions\"\npositions = [[0, \"oak\"]]\n").find("a list of [x, y]"),
+            std::string::npos);
+  EXPECT_EQ(refusal("[[tree]]\n[[tree]]\nseed = 2\n"),
+            "s.toml:2: tree.name = \"cherry\": must differ from that of the other kinds of trees");
+  EXPECT_NE(refusal("tree = []\n").find("tree = []: must be a table [tree]"), std::string::npos);
+  EXPECT_NE(refusal("[tree]\nleaf_reflectance = 0.7\n").find("at most 1"), std::string::npos);
 }
 
 // Check that what is wrong is named with its file, line, key, value and rule.

@@ -20,9 +20,9 @@ namespace sunfleck::detail {
 // One table of a scene file. Every key is read through it; `done` refuses what nobody asked for.
 class SceneTable {
  public:
-  SceneTable(const toml::table& file, std::string file_name, std::string name)
+  // `node`: none if the file lacks the table.
+  SceneTable(const toml::node* node, std::string file_name, std::string name)
       : file_(std::move(file_name)), name_(std::move(name)) {
-    const toml::node* node = file.get(name_);
     if (node && !node->is_table()) refuse(*node, name_, "a table: [" + name_ + "]");
     if (node) table_ = node->as_table();
   }
@@ -58,26 +58,37 @@ class SceneTable {
   }
 
   // One number for all bands, or one for each.
-  glm::vec3 perBand(const std::string& key, float fallback) {
+  glm::vec3 perBand(const std::string& key, const glm::vec3& fallback) {
     const toml::node* node = take(key);
-    if (!node) return glm::vec3(fallback);
+    if (!node) return fallback;
     const std::string rule = "in [0, 1]: one number, or three for red, green and blue";
     if (!node->is_array()) return glm::vec3(static_cast<float>(checked(*node, key, 0., 1., rule)));
     const std::vector<double> v = numbersOf(*node, key, kBands, 0., 1., rule);
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
   }
 
-  // A list of [x, y] or [x, y, rotation_deg].
-  std::vector<Placement> placements(const std::string& key) {
+  // A list of [x, y] or [x, y, rotation_deg], each with or without a kind's name at its end. Trees without take the
+  // kinds in turn.
+  std::vector<Placement> placements(const std::string& key, const std::vector<TreeKind>& kinds) {
     const toml::node* node = take(key);
-    const std::string rule = "a list of [x, y] or [x, y, rotation_deg], at least one, each number in [-1e6, 1e6]";
+    const std::string rule =
+        "a list of [x, y] or [x, y, rotation_deg], at least one, each number in [-1e6, 1e6], and each with the name of "
+        "a kind of tree at its end or without";
     if (!node->is_array() || node->as_array()->empty()) refuse(*node, key, rule);
     std::vector<Placement> trees;
     for (const toml::node& item : *node->as_array()) {
-      const std::size_t length = item.is_array() && item.as_array()->size() == 2 ? 2 : 3;
-      const std::vector<double> v = numbersOf(item, key, length, -1e6, 1e6, rule);
-      trees.push_back({.position = {static_cast<float>(v[0]), static_cast<float>(v[1]), 0.f},
-                       .rotation = length == 3 ? glm::radians(static_cast<float>(v[2])) : 0.f});
+      if (!item.is_array()) refuse(item, key, rule);
+      const toml::array& row = *item.as_array();
+      const bool named = !row.empty() && row.back().is_string();
+      const std::size_t length = row.size() - (named ? 1 : 0);
+      if (length != 2 && length != 3) refuse(item, key, rule);
+      std::vector<float> v;
+      for (std::size_t i = 0; i < length; ++i)
+        v.push_back(static_cast<float>(checked(*row.get(i), key, -1e6, 1e6, rule)));
+      Placement& tree = trees.emplace_back(Placement{.position = {v[0], v[1], 0.f}});
+      if (length == 3) tree.rotation = glm::radians(v[2]);
+      tree.kind =
+          named ? kindNamed(row.back(), key, kinds) : static_cast<std::uint32_t>((trees.size() - 1) % kinds.size());
     }
     return trees;
   }
@@ -101,6 +112,15 @@ class SceneTable {
   }
 
  private:
+  std::uint32_t kindNamed(const toml::node& node, const std::string& key, const std::vector<TreeKind>& kinds) const {
+    std::string names;
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      if (kinds[kind].name == *node.value<std::string>()) return static_cast<std::uint32_t>(kind);
+      names += (names.empty() ? "\"" : ", \"") + kinds[kind].name + "\"";
+    }
+    refuse(node, key, "the name of a kind of tree: " + names);
+  }
+
   const toml::node* take(const std::string& key) {
     taken_.push_back(key);
     return table_ ? table_->get(key) : nullptr;
