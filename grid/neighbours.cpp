@@ -39,7 +39,7 @@ void requireApart(const Stand& stand, const Bounds& box) {
       const glm::dvec2 away = glm::dvec2(other.position) - glm::dvec2(tree.position);
       here += stand.period
                   ? within(away.x, half.x, double{stand.period->x}) * within(away.y, half.y, double{stand.period->y})
-                  : double{std::abs(away.x) <= half.x && std::abs(away.y) <= half.y};
+                  : (std::abs(away.x) <= half.x && std::abs(away.y) <= half.y ? 1. : 0.);
     }
     most = std::max(most, here);
   }
