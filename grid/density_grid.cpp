@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -92,6 +93,28 @@ std::size_t occupiedColumns(const FloatTree& tree) {
   return count;
 }
 
+// Of the cells' optics, over their leaf area.
+BandOptics meanOver(const FloatTree& density, const std::vector<std::vector<BandOptics>>& optics) {
+  using Sums = std::array<double, kOpticsNames.size() + 1>;  // the last: of the density alone
+  Sums all{};
+  for (const Sums& part : overBlocks(density, [&](const Leaf& leaf) {
+         Sums sums{};
+         auto value = optics[leaf.transientData()].begin();
+         for (auto cell = leaf.cbeginValueOn(); cell; ++cell) {
+           const BandOptics& of_cell = *value++;
+           const auto weight = static_cast<double>(*cell);
+           for (std::size_t i = 0; i < kOpticsNames.size(); ++i)
+             sums[i] += weight * static_cast<double>(opticsValue(of_cell, i));
+           sums.back() += weight;
+         }
+         return sums;
+       }))
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] += part[i];
+  BandOptics mean;
+  for (std::size_t i = 0; i < kOpticsNames.size(); ++i) opticsValue(mean, i) = static_cast<float>(all[i] / all.back());
+  return mean;
+}
+
 std::optional<Coord> cellAt(const DensityGrid::Cells& cells, glm::vec3 position) {
   const glm::dvec3 cell = glm::floor((glm::dvec3(position) - cells.corner) / cells.cell_size);
   for (int axis = 0; axis < 3; ++axis)
@@ -113,6 +136,7 @@ DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low
   occupied = leaves.cells;
   leaf_area = leaves.sum * volume;
   if (!leaves.tiles) crown_area = static_cast<double>(occupiedColumns(*density)) * cell_size * cell_size;
+  if (!optics.empty() && leaves.sum > 0.) mean_optics = meanOver(*density, optics);
   if (wood) {
     const Occupied blocked = occupiedOf(*wood);
     wood_cells = blocked.cells;
@@ -128,22 +152,31 @@ DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low
 
 std::vector<DensityGrid::Cells::Named> DensityGrid::Cells::named() const {
   const auto bytes = [](const FloatTree& tree) { return static_cast<std::size_t>(tree.memUsage()); };
+  const auto kept = [](FloatTreePtr tree) { return [tree] { return tree; }; };
   std::vector<Named> all{{kDensityName, "1/m",
-                          "one-sided leaf area density: leaf area in a cell over the volume of the cell", density,
+                          "one-sided leaf area density: leaf area in a cell over the volume of the cell", kept(density),
                           occupied, bytes(*density)}};
   if (!moments.empty())
-    for (const char* name : kNormalNames) {
-      const std::string axes = std::string(name).substr(7);
+    for (std::size_t i = 0; i < kNormalNames.size(); ++i) {
+      const std::string name = kNormalNames[i], axes = name.substr(7);
       all.push_back({name, "1",
                      "second moment M_" + axes + " of leaf normals: mean of n_" + axes[0] + " n_" + axes[1] +
                          " over the leaf area in a cell; M_zz = 1 - M_xx - M_yy",
-                     nullptr, occupied, occupied * sizeof(float)});
+                     [this, i] { return momentTree(i); }, occupied, occupied * sizeof(float)});
+    }
+  if (!optics.empty())
+    for (std::size_t i = 0; i < kOpticsNames.size(); ++i) {
+      const std::string name = kOpticsNames[i], band = name.substr(name.find('_') + 1);
+      all.push_back({name, "1",
+                     "share of the arriving " + band + " light that leaves " +
+                         (name.starts_with("r") ? "reflect" : "transmit") + ": mean over the leaf area in a cell",
+                     [this, i] { return opticsTree(i); }, occupied, occupied * sizeof(float)});
     }
   if (wood)
     all.push_back({kWoodName, "1/m",
                    "extinction by wood: its projected area in a cell, mean of all directions, over the "
                    "volume of the cell",
-                   wood, wood_cells, bytes(*wood)});
+                   kept(wood), wood_cells, bytes(*wood)});
   return all;
 }
 
@@ -157,6 +190,15 @@ float DensityGrid::at(glm::vec3 position) const {
 LeafOrientation DensityGrid::orientationAt(glm::vec3 position) const {
   const auto cell = cellAt(*cells_, position);
   return cell ? cells_->orientation(*cell) : LeafOrientation{};
+}
+
+std::optional<BandOptics> DensityGrid::opticsAt(glm::vec3 position) const {
+  const auto cell = cellAt(*cells_, position);
+  return cell ? cells_->opticsOf(*cell) : std::nullopt;
+}
+
+std::optional<BandOptics> DensityGrid::meanOptics() const {
+  return cells_->mean_optics;
 }
 
 float DensityGrid::woodAt(glm::vec3 position) const {
