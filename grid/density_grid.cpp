@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -80,17 +81,30 @@ Occupied occupiedOf(const FloatTree& tree) {
   return all;
 }
 
-// How many columns of cells along z hold leaves.
-std::size_t occupiedColumns(const FloatTree& tree) {
+// Of the columns of cells along z that hold leaves, seen from above; of the whole, or of what lies within a rectangle
+// [squared side of a cell].
+double occupiedColumns(const FloatTree& tree, const std::optional<DensityGrid::Cells::Rectangle>& within) {
   std::map<std::pair<int, int>, std::uint64_t> columns;  // of each 8 x 8, those that do
   for (const Leaf* leaf : blocksOf(tree)) {
     std::uint64_t& mask = columns[{leaf->origin().x(), leaf->origin().y()}];
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
       if (leaf->getValue(i) != 0.f) mask |= std::uint64_t{1} << (i / Leaf::DIM);
   }
-  std::size_t count = 0;
-  for (const auto& [place, mask] : columns) count += static_cast<std::size_t>(std::popcount(mask));
-  return count;
+  double area = 0.;
+  for (const auto& [place, mask] : columns) {
+    if (!within) {
+      area += std::popcount(mask);
+      continue;
+    }
+    const glm::dvec2 corner(place.first, place.second);
+    for (int column = 0; column < 64; ++column)
+      if (mask >> column & 1) {
+        const glm::dvec2 low = corner + glm::dvec2(column / 8, column % 8);
+        const glm::dvec2 size = glm::max(glm::min(low + 1., within->high) - glm::max(low, within->low), 0.);
+        area += size.x * size.y;
+      }
+  }
+  return area;
 }
 
 // Of the cells' optics, over their leaf area.
@@ -129,13 +143,14 @@ void initializeOpenVdb() {
   std::call_once(once, [] { openvdb::initialize(); });
 }
 
-DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low)
+DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low,
+                          const std::optional<Rectangle>& within)
     : DensityTrees(std::move(trees)), cell_size(side), corner(low) {
   const double volume = cell_size * cell_size * cell_size;
   const Occupied leaves = occupiedOf(*density);
   occupied = leaves.cells;
   leaf_area = leaves.sum * volume;
-  if (!leaves.tiles) crown_area = static_cast<double>(occupiedColumns(*density)) * cell_size * cell_size;
+  if (!leaves.tiles) crown_area = occupiedColumns(*density, within) * cell_size * cell_size;
   if (!optics.empty() && leaves.sum > 0.) mean_optics = meanOver(*density, optics);
   if (wood) {
     const Occupied blocked = occupiedOf(*wood);

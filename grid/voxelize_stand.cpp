@@ -398,7 +398,9 @@ DensityGrid DensityGrid::voxelizeStand(std::span<const TreeMesh* const> kinds, c
   };
   DensityTrees trees(placed(&DensityTrees::density, {progress, 0.5, 0.9}));
   if (wood) trees.setWood(placed(&DensityTrees::wood, {progress, 0.9, 1.}));
-  auto cells = std::make_shared<Cells>(std::move(trees), side, glm::dvec3(0.));
+  std::optional<Cells::Rectangle> period;
+  if (stand.period) period = {glm::dvec2(arrangement.kept.low), glm::dvec2(arrangement.kept.high)};
+  auto cells = std::make_shared<Cells>(std::move(trees), side, glm::dvec3(0.), period);
   if (stand.period) cells->period = *stand.period;
   return DensityGrid(std::move(cells));
 }

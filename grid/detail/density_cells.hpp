@@ -79,8 +79,14 @@ struct DensityGrid::Cells : DensityTrees {
   Bounds box;                               // of the occupied cells [m]
   std::optional<glm::dvec2> period{};       // of a periodic stand along x and y [m]
 
-  // Counts, sums and bounds the cells of the trees.
-  Cells(DensityTrees trees, double side, const glm::dvec3& low);
+  // Along x and y, from the corner of cell (0, 0, 0) [cell].
+  struct Rectangle {
+    glm::dvec2 low, high;
+  };
+
+  // Counts, sums and bounds the cells of the trees. `within`: the one period of a periodic stand, which its last cells
+  // may pass.
+  Cells(DensityTrees trees, double side, const glm::dvec3& low, const std::optional<Rectangle>& within = {});
 
   struct Named {
     std::string name, unit, description;
