@@ -260,7 +260,7 @@ void validate(const Stand& stand, std::size_t kinds, float cell_size) {
     const auto& [position, rotation, kind] = stand.trees[i];
     const std::string name = "tree " + std::to_string(i) + " ";
     require(kind < kinds, name + "kind", kind, "below the number of kinds, " + std::to_string(kinds));
-    require(std::isfinite(rotation), name + "rotation [rad]", rotation, "finite");
+    require(std::isfinite(rotation), name + "rotation", rotation, "finite");
     for (int axis = 0; axis < 3; ++axis)
       require(std::isfinite(position[axis]), name + "position [m]", position[axis], "finite");
   }

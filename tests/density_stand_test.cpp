@@ -337,7 +337,7 @@ TEST(D2_DensityOfStand, RefusesWhatCannotBe) {
   };
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   refused({.trees = {{}, {{0.f, nan, 0.f}}}}, .1f, "tree 1 position [m] = nan: must be finite");
-  refused({.trees = {{{}, nan}}}, .1f, "tree 0 rotation [rad] = nan: must be finite");
+  refused({.trees = {{{}, nan}}}, .1f, "tree 0 rotation = nan: must be finite");
   refused({.period = glm::vec2(1.f, 0.f)}, .1f, "period [m] = 0: must be above 0");
   refused({.period = glm::vec2(3.f, .09f)}, .1f, "cell size [m] = 0.1: must be at most a side of the period, 0.09");
   refused({.trees = std::vector<Placement>(1000), .period = glm::vec2(.01f)}, .01f,
