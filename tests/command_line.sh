@@ -126,15 +126,15 @@ printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "positions"\npositions = [[0,
 refuses "ground albedo" validate ground.toml
 refuses "rotated.toml: stand.positions: rotation_deg of tree 1 = 45" validate rotated.toml
 printf '[[tree]]\nfile = "leaf.obj"\n[[tree]]\nfile = "leaf.obj"\nname = "dark"\nleaf_reflectance = 0.1\n' >kinds.toml
-refuses "kinds.toml: \[stand\] has no place for a tree of kind \"dark\"" trace kinds.toml
+refuses "kinds.toml: [stand] has no place for a tree of kind \"dark\"" trace kinds.toml
 printf '[stand]\nkind = "positions"\npositions = [[0, 0, "dark"], [3, 0, "leaf"]]\n' >>kinds.toml
 refuses "number of kinds of trees = 2" validate kinds.toml
 refuses "number of kinds of trees = 2" render kinds.toml -o x.png
 refuses "with --stand" voxelize kinds.toml
 refuses "without --stand" voxelize leaf.obj --period 3 3
-refuses "in \[1e-6, 1e6\] m" voxelize leaf.obj --stand --period 1e-9 3
+refuses "in [1e-6, 1e6] m" voxelize leaf.obj --stand --period 1e-9 3
 refuses "at most a side of the period" voxelize leaf.obj --stand --period 2 3 --cell-size 2.5
-refuses "in \[2e-5, 1e6\] m" voxelize leaf.obj --cell-size 1e-5 -o x.vdb
+refuses "in [2e-5, 1e6] m" voxelize leaf.obj --cell-size 1e-5 -o x.vdb
 refuses "rotation" render rotated.toml -o x.png
 refuses "period" validate leaf.obj --period 0.01 0.01
 refuses "--only-picture" trace leaf.obj --only-picture -o x.csv

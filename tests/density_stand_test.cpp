@@ -230,8 +230,9 @@ TEST(D11_OpticsOfCells, AreMeansOverTheLeafArea) {
       const LeafOptics &of_a = two.optics[0][band], &of_b = two.optics[1][band];
       ASSERT_NEAR((*found)[band].reflectance, (a * of_a.reflectance + b * of_b.reflectance) / (a + b), 4e-7f);
       ASSERT_NEAR((*found)[band].transmittance, (a * of_a.transmittance + b * of_b.transmittance) / (a + b), 4e-7f);
-      if (b == 0.f) ASSERT_EQ((*found)[band], of_a);
-      if (a == 0.f) ASSERT_EQ((*found)[band], of_b);
+      if (a == 0.f || b == 0.f) {
+        ASSERT_EQ((*found)[band], b == 0.f ? of_a : of_b);
+      }
     }
   });
   EXPECT_GT(mixed, 50);
