@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -24,10 +27,11 @@ struct VoxelizeOptions {
   SceneOptions scene;
   std::string output;
   std::optional<float> cell_size;
-  bool stand = false;
+  bool stand = false, optics = false;
+  std::string of_trees;  // an option given that says something of trees, or of the grids to make of them
 };
 
-constexpr float kCellsAlongTree = 128.f;
+constexpr float kCellsAlongTree = 128.f;  // the smallest of the scene's
 
 void requireGridFile(const std::filesystem::path& file) {
   if (file.extension() != ".vdb" && file.extension() != ".nvdb")
@@ -35,48 +39,94 @@ void requireGridFile(const std::filesystem::path& file) {
   requireWritable(file);
 }
 
-// Share of the leaf area that is seen from above: the mean of |n_z|, which the grid estimates.
-double projectionAlongZ(const TreeMesh& mesh) {
+// Of any case, as importers take a tree's file.
+bool isGridFile(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  return extension == ".vdb" || extension == ".VDB";
+}
+
+// The first option given that is none of those every command and every input takes.
+std::string optionOfTrees(const CLI::App& command) {
+  static const std::vector<std::string> of_any{"scene", "--output", "--json", "--quiet", "--threads", "--seed"};
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && std::find(of_any.begin(), of_any.end(), option->get_name()) == of_any.end())
+      return option->get_name();
+  return "";
+}
+
+// Leaf area as seen from above, each leaf for itself: that times the mean of |n_z|, which the grid estimates [m^2].
+double projectedAlongZ(const TreeMesh& mesh) {
   double projected = 0.;
   for (const glm::uvec3& t : mesh.leaf_triangles) {
     const glm::dvec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
     projected += 0.5 * std::abs(glm::cross(b - a, c - a).z);
   }
-  return projected / leafArea(mesh);
+  return projected;
+}
+
+float defaultCellSize(const Scene& scene) {
+  float least = std::numeric_limits<float>::infinity();
+  for (const TreeKind& kind : scene.kinds) {
+    const glm::vec3 size = leafBounds(*kind.mesh).size();
+    least = std::min(least, std::max({size.x, size.y, size.z}) / kCellsAlongTree);
+  }
+  return least;
+}
+
+// Of the kinds' leaves; none unless they differ or are asked for.
+std::vector<BandOptics> opticsOf(const Scene& scene, bool asked) {
+  std::vector<BandOptics> optics;
+  for (const TreeKind& kind : scene.kinds) optics.push_back(kind.leaf);
+  const bool differ = std::adjacent_find(optics.begin(), optics.end(), std::not_equal_to<>()) != optics.end();
+  return asked || differ ? optics : std::vector<BandOptics>{};
+}
+
+void requireStandIfNeeded(const VoxelizeOptions& options, const Scene& scene) {
+  if (options.stand) return;
+  if (options.scene.period) throw InvalidInput("--period: without --stand, the tree alone is voxelized");
+  if (scene.kinds.size() > 1)
+    throw InvalidInput(
+        fmt::format("{}: has {} kinds of trees: must be voxelized with --stand", scene.origin, scene.kinds.size()));
 }
 
 std::string standName(const Scene& scene) {
-  const std::string trees = fmt::format("{} x {}", scene.stand.trees.size(), scene.kinds[0].source);
+  std::vector<std::size_t> count(scene.kinds.size());
+  for (const Placement& tree : scene.stand.trees) ++count[tree.kind];
+  std::string trees;
+  for (std::size_t kind = 0; kind < count.size(); ++kind)
+    trees += fmt::format("{}{} x {}", kind == 0 ? "" : "; ", count[kind], scene.kinds[kind].source);
   if (!scene.stand.period) return trees;
   return fmt::format("{}, one period of {:.6g} m x {:.6g} m", trees, scene.stand.period->x, scene.stand.period->y);
 }
 
 int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
   if (!options.output.empty()) requireGridFile(options.output);
-  const bool from_grid = std::filesystem::path(options.scene.scene).extension() == ".vdb";
+  const bool from_grid = isGridFile(options.scene.scene);
   double mesh_area = 0., mesh_projection = 0., seconds = 0.;
   GridSource source{.name = options.scene.scene, .hash = "", .program = versionText()};
   const DensityGrid grid = [&] {
     if (from_grid) {
-      if (options.stand) throw InvalidInput("--stand: a .vdb file holds grids and no trees to place");
+      if (!options.of_trees.empty())
+        throw InvalidInput(options.of_trees + ": a .vdb file holds grids already and no trees to voxelize");
       return readIsolated(options.scene.scene, [](double) { return !interrupted(); });
     }
     const Scene scene = readScene(options.scene);
-    source.name = scene.kinds[0].source;
-    source.hash = meshHash(*scene.kinds[0].mesh);
-    mesh_area = leafArea(*scene.kinds[0].mesh);
-    if (options.stand) {
-      source.name = standName(scene);
-      source.hash = standHash(*scene.kinds[0].mesh, scene.stand);
-      mesh_area *= static_cast<double>(scene.stand.trees.size());
+    requireStandIfNeeded(options, scene);
+    const Stand stand = options.stand ? scene.stand : Stand{};
+    const std::vector<BandOptics> optics = opticsOf(scene, options.optics);
+    source.name = options.stand ? standName(scene) : scene.kinds[0].source;
+    source.hash =
+        options.stand || options.optics ? standHash(meshes(scene), stand, optics) : meshHash(*scene.kinds[0].mesh);
+    for (const Placement& tree : stand.trees) {
+      mesh_area += leafArea(*scene.kindOf(tree).mesh);
+      mesh_projection += projectedAlongZ(*scene.kindOf(tree).mesh);
     }
-    mesh_projection = projectionAlongZ(*scene.kinds[0].mesh);
-    const glm::vec3 size = leafBounds(*scene.kinds[0].mesh).size();
-    const float cell_size = options.cell_size.value_or(std::max({size.x, size.y, size.z}) / kCellsAlongTree);
+    mesh_projection /= mesh_area;
+    const float cell_size = options.cell_size.value_or(defaultCellSize(scene));
     const auto start = std::chrono::steady_clock::now();
     const Progress progress = terminalProgress("voxelizing", run.quiet);
-    DensityGrid made = options.stand
-                           ? DensityGrid::voxelizeStand(*scene.kinds[0].mesh, scene.stand, cell_size, progress)
+    DensityGrid made = options.stand || options.optics
+                           ? DensityGrid::voxelizeStand(meshes(scene), stand, cell_size, optics, progress)
                            : DensityGrid::voxelize(*scene.kinds[0].mesh, cell_size, progress);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return made;
@@ -98,6 +148,11 @@ int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
     }
     if (grid.leafArea() > 0.) result["projection_z"] = projection;
     result["projected_wood_area_m2"] = grid.projectedWoodArea();
+    if (const auto optics = grid.meanOptics())
+      for (const LeafOptics& band : *optics) {
+        result["mean_reflectance"].push_back(band.reflectance);
+        result["mean_transmittance"].push_back(band.transmittance);
+      }
     for (const DensityGrid::Summary& one : grid.grids())
       result["grids"].push_back(
           {{"name", one.name}, {"unit", one.unit}, {"cells", one.cells}, {"memory_bytes", one.bytes}});
@@ -117,10 +172,16 @@ int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
                grid.leafArea() / grid.crownArea());
   if (grid.leafArea() > 0.) fmt::print("\n  projection     {:.4f} along z by the grid", projection);
   if (!from_grid) fmt::print(", {:.4f} by the mesh\n  time           {:.0f} ms", mesh_projection, 1e3 * seconds);
-  fmt::print("\n  grids          name        cells      MB  unit\n");
+  if (const auto optics = grid.meanOptics()) {
+    const auto& [red, green, blue] = *optics;
+    fmt::print("\n  leaves         reflectance {:.4g} {:.4g} {:.4g}, transmittance {:.4g} {:.4g} {:.4g} in the mean",
+               red.reflectance, green.reflectance, blue.reflectance, red.transmittance, green.transmittance,
+               blue.transmittance);
+  }
+  fmt::print("\n  grids          name                    cells      MB  unit\n");
   for (const DensityGrid::Summary& one : grid.grids())
-    fmt::print("                 {:9} {:>7} {:>7.3g}  {}\n", one.name, one.cells, static_cast<double>(one.bytes) * 1e-6,
-               one.unit);
+    fmt::print("                 {:21} {:>7} {:>7.3g}  {}\n", one.name, one.cells,
+               static_cast<double>(one.bytes) * 1e-6, one.unit);
   if (!options.output.empty())
     fmt::print("wrote {}, {:.3g} MB\n", options.output,
                static_cast<double>(std::filesystem::file_size(options.output)) * 1e-6);
@@ -138,11 +199,17 @@ void addVoxelize(CLI::App& app, RunOptions& options, int& status) {
   addSceneOptions(*command, voxelize->scene);
   command->add_option("-o,--output", voxelize->output, "File to write: .vdb, or .nvdb for NanoVDB");
   command->add_option("--cell-size", voxelize->cell_size, "Side of a cell in metres (default: 1/128 of the tree)")
-      ->check(numberIn(1e-5, 1e6, "in [1e-5, 1e6] m"));
+      ->check(numberIn(2e-5, 1e6, "in [2e-5, 1e6] m"));
   command->add_flag(
       "--stand", voxelize->stand,
       "All trees of the scene's stand on one grid; one period of a periodic stand (default: its tree alone)");
-  command->callback([voxelize, &options, &status] { status = runVoxelize(*voxelize, options); });
+  command->add_flag("--optics", voxelize->optics,
+                    "Also the leaves' reflectance and transmittance in each cell; with --stand, always where the "
+                    "scene's kinds of trees differ in them");
+  command->callback([voxelize, command, &options, &status] {
+    voxelize->of_trees = optionOfTrees(*command);
+    status = runVoxelize(*voxelize, options);
+  });
 }
 
 }  // namespace sunfleck::apps

@@ -27,7 +27,7 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
   command
       .add_option("--period", options.period, "Repeat the stand without end on a rectangle with these sides, in metres")
       ->expected(2)
-      ->check(numberIn(1e-6, 1e6, "above 0 m, at most 1e6"))
+      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6] m"))
       ->group(group);
   command
       .add_option("--leaf", options.leaf,

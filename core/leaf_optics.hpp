@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "core/quantities.hpp"
 
 namespace sunfleck {
@@ -14,6 +16,8 @@ struct LeafOptics {
   Number albedo() const { return reflectance + transmittance; }  // omega [1], 0 .. 1
   bool operator==(const LeafOptics&) const = default;
 };
+
+using BandOptics = std::array<LeafOptics, kBands>;
 
 // Throws InvalidInput when a share is negative, not a number, or their sum exceeds 1.
 void validate(const LeafOptics& optics);

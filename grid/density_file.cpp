@@ -16,6 +16,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
@@ -86,6 +87,10 @@ class Grids {
       if (normals_[i].has_value() != normals_[0].has_value())
         required(bytes, kNormalNames[normals_[0] ? i : 0]);  // some without the others mean nothing
     }
+    for (std::size_t i = 0; i < kOpticsNames.size(); ++i) {
+      optics_[i] = findFloatGrid(bytes, kOpticsNames[i]);
+      if (optics_[i].has_value() != optics_[0].has_value()) required(bytes, kOpticsNames[optics_[0] ? i : 0]);
+    }
     wood_ = findFloatGrid(bytes, kWoodName);
     validateTransforms();
     requireMemory(memory());
@@ -96,7 +101,9 @@ class Grids {
     DensityTrees trees;
     trees.density = tree(density_);
     validateValues(*trees.density, "density [1/m]", 0.f, kAny, "finite and not negative");
+    if (normals_[0] || optics_[0]) prepareCells(trees);
     if (normals_[0]) readMoments(trees);
+    if (optics_[0]) readOptics(trees);
     if (wood_) {
       trees.wood = tree(*wood_);
       validateValues(*trees.wood, "wood [1/m]", 0.f, kAny, "finite and not negative");
@@ -113,13 +120,14 @@ class Grids {
     return *grid;
   }
 
-  // At most, beside the file's bytes: the trees that are kept, one with a moment at a time, and all moments.
+  // At most, beside the file's bytes: the trees that are kept, one with a moment or optics at a time, and all of these.
   double memory() const {
-    double bytes = density_.memory + (wood_ ? wood_->memory : 0.);
-    if (!normals_[0]) return bytes;
-    double most = 0.;
-    for (const auto& moment : normals_) most = std::max(most, moment->memory);
-    return bytes + most + density_.memory / sizeof(float) * sizeof(LeafOrientation);
+    double bytes = density_.memory + (wood_ ? wood_->memory : 0.), most = 0.;
+    const double cells = density_.memory / sizeof(float);
+    for (const auto& moment : normals_) most = std::max(most, moment ? moment->memory : 0.);
+    for (const auto& one : optics_) most = std::max(most, one ? one->memory : 0.);
+    return bytes + most + (normals_[0] ? cells * sizeof(LeafOrientation) : 0.) +
+           (optics_[0] ? cells * sizeof(BandOptics) : 0.);
   }
 
   void validateTransforms() const {
@@ -136,40 +144,75 @@ class Grids {
         throw InvalidInput(std::string("holds a grid \"") + name + "\" in other cells than those of \"density\"");
     };
     for (std::size_t i = 0; i < normals_.size(); ++i) same(normals_[i], kNormalNames[i]);
+    for (std::size_t i = 0; i < optics_.size(); ++i) same(optics_[i], kOpticsNames[i]);
     same(wood_, kWoodName);
   }
 
-  void readMoments(DensityTrees& trees) {
+  // Exactly the cells with leaves are active, and blocks are numbered.
+  void prepareCells(DensityTrees& trees) {
     auto tile = trees.density->cbeginValueAll();
     tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile)
       if (*tile != 0.f)
-        throw InvalidInput("holds second moments of leaf normals, and a density whose " +
-                           ofCell("block", tile.getCoord()) + " has one value: must have a value for each cell");
-    std::vector<Leaf*> blocks;
-    trees.density->getNodes(blocks);
-    for (std::size_t block = 0; block < blocks.size(); ++block) {
-      Leaf& leaf = *blocks[block];
+        throw InvalidInput(std::string("holds ") +
+                           (normals_[0] ? "second moments of leaf normals" : "optics of leaves") +
+                           ", and a density whose " + ofCell("block", tile.getCoord()) +
+                           " has one value: must have a value for each cell");
+    trees.density->getNodes(blocks_);
+    for (std::size_t block = 0; block < blocks_.size(); ++block) {
+      Leaf& leaf = *blocks_[block];
       for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) leaf.setActiveState(i, leaf.getValue(i) != 0.f);
       leaf.setTransientData(static_cast<openvdb::Index32>(block));
-      trees.moments.emplace_back(leaf.onVoxelCount());
     }
+  }
+
+  // `set(values of the cell, value)` of each cell with leaves.
+  template <typename Values, typename Set>
+  void readInto(std::vector<std::vector<Values>>& of_blocks, const openvdb::FloatTree& one, const Set& set) {
+    const openvdb::FloatGrid::ConstAccessor values(one);
+    for (std::size_t block = 0; block < blocks_.size(); ++block) {
+      auto of_cell = of_blocks[block].begin();
+      for (auto cell = blocks_[block]->cbeginValueOn(); cell; ++cell) set(*of_cell++, values.getValue(cell.getCoord()));
+    }
+  }
+
+  // Throws unless `possible(values)` of each cell with leaves.
+  template <typename Values, typename Possible>
+  void requirePossible(const std::vector<std::vector<Values>>& of_blocks, const Possible& possible,
+                       const std::string& what, const char* rule) const {
+    for (std::size_t block = 0; block < blocks_.size(); ++block) {
+      auto of_cell = of_blocks[block].begin();
+      for (auto cell = blocks_[block]->cbeginValueOn(); cell; ++cell)
+        if (!possible(*of_cell++)) throw InvalidInput(ofCell(what, cell.getCoord()) + ": must be " + rule);
+    }
+  }
+
+  void readMoments(DensityTrees& trees) {
+    for (const Leaf* leaf : blocks_) trees.moments.emplace_back(leaf->onVoxelCount());
     for (std::size_t i = 0; i < normals_.size(); ++i) {
       const FloatTreePtr one = tree(*normals_[i]);
       validateValues(*one, kNormalNames[i], -1.f, 1.f, "from -1 to 1");
-      const openvdb::FloatGrid::ConstAccessor values(*one);
-      for (const Leaf* leaf : blocks) {
-        auto moment = trees.moments[leaf->transientData()].begin();
-        for (auto cell = leaf->cbeginValueOn(); cell; ++cell) *moment++.*kMoments[i] = values.getValue(cell.getCoord());
-      }
+      readInto(trees.moments, *one, [i](LeafOrientation& of_cell, float value) { of_cell.*kMoments[i] = value; });
     }
-    for (const Leaf* leaf : blocks) {
-      auto moment = trees.moments[leaf->transientData()].begin();
-      for (auto cell = leaf->cbeginValueOn(); cell; ++cell)
-        if (!(*moment++).possible())
-          throw InvalidInput(ofCell("the second moments of leaf normals", cell.getCoord()) +
-                             ": must be a mean of n n^T over unit vectors n");
+    requirePossible(
+        trees.moments, [](const LeafOrientation& of_cell) { return of_cell.possible(); },
+        "the second moments of leaf normals", "a mean of n n^T over unit vectors n");
+  }
+
+  void readOptics(DensityTrees& trees) {
+    constexpr float most = 1.f + 0x1p-10f;  // as two that are 1 together may round to in 16 bits
+    for (const Leaf* leaf : blocks_) trees.optics.emplace_back(leaf->onVoxelCount());
+    for (std::size_t i = 0; i < optics_.size(); ++i) {
+      const FloatTreePtr one = tree(*optics_[i]);
+      validateValues(*one, kOpticsNames[i], 0.f, 1.f, "from 0 to 1");
+      readInto(trees.optics, *one, [i](BandOptics& of_cell, float value) { opticsValue(of_cell, i) = value; });
     }
+    requirePossible(
+        trees.optics,
+        [](const BandOptics& of_cell) {
+          return std::all_of(of_cell.begin(), of_cell.end(), [](const LeafOptics& o) { return o.albedo() <= most; });
+        },
+        "reflectance and transmittance", "at most 1 together");
   }
 
   // Lets OpenVDB read the tree alone, at a place that has been walked: the rest of its reader trusts the file.
@@ -187,7 +230,9 @@ class Grids {
 
   VdbFloatGrid density_;
   std::array<std::optional<VdbFloatGrid>, kNormalNames.size()> normals_;
+  std::array<std::optional<VdbFloatGrid>, kOpticsNames.size()> optics_;
   std::optional<VdbFloatGrid> wood_;
+  std::vector<Leaf*> blocks_;  // of the density, numbered
   std::istringstream in_{std::ios::in | std::ios::binary};
 };
 

@@ -3,9 +3,11 @@
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -79,17 +81,52 @@ Occupied occupiedOf(const FloatTree& tree) {
   return all;
 }
 
-// How many columns of cells along z hold leaves.
-std::size_t occupiedColumns(const FloatTree& tree) {
+// Of the columns of cells along z that hold leaves, seen from above; of the whole, or of what lies within a rectangle
+// [squared side of a cell].
+double occupiedColumns(const FloatTree& tree, const std::optional<DensityGrid::Cells::Rectangle>& within) {
   std::map<std::pair<int, int>, std::uint64_t> columns;  // of each 8 x 8, those that do
   for (const Leaf* leaf : blocksOf(tree)) {
     std::uint64_t& mask = columns[{leaf->origin().x(), leaf->origin().y()}];
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
       if (leaf->getValue(i) != 0.f) mask |= std::uint64_t{1} << (i / Leaf::DIM);
   }
-  std::size_t count = 0;
-  for (const auto& [place, mask] : columns) count += static_cast<std::size_t>(std::popcount(mask));
-  return count;
+  double area = 0.;
+  for (const auto& [place, mask] : columns) {
+    if (!within) {
+      area += std::popcount(mask);
+      continue;
+    }
+    const glm::dvec2 corner(place.first, place.second);
+    for (int column = 0; column < 64; ++column)
+      if (mask >> column & 1) {
+        const glm::dvec2 low = corner + glm::dvec2(column / 8, column % 8);
+        const glm::dvec2 size = glm::max(glm::min(low + 1., within->high) - glm::max(low, within->low), 0.);
+        area += size.x * size.y;
+      }
+  }
+  return area;
+}
+
+// Of the cells' optics, over their leaf area.
+BandOptics meanOver(const FloatTree& density, const std::vector<std::vector<BandOptics>>& optics) {
+  using Sums = std::array<double, kOpticsNames.size() + 1>;  // the last: of the density alone
+  Sums all{};
+  for (const Sums& part : overBlocks(density, [&](const Leaf& leaf) {
+         Sums sums{};
+         auto value = optics[leaf.transientData()].begin();
+         for (auto cell = leaf.cbeginValueOn(); cell; ++cell) {
+           const BandOptics& of_cell = *value++;
+           const auto weight = static_cast<double>(*cell);
+           for (std::size_t i = 0; i < kOpticsNames.size(); ++i)
+             sums[i] += weight * static_cast<double>(opticsValue(of_cell, i));
+           sums.back() += weight;
+         }
+         return sums;
+       }))
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] += part[i];
+  BandOptics mean;
+  for (std::size_t i = 0; i < kOpticsNames.size(); ++i) opticsValue(mean, i) = static_cast<float>(all[i] / all.back());
+  return mean;
 }
 
 std::optional<Coord> cellAt(const DensityGrid::Cells& cells, glm::vec3 position) {
@@ -106,13 +143,15 @@ void initializeOpenVdb() {
   std::call_once(once, [] { openvdb::initialize(); });
 }
 
-DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low)
+DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low,
+                          const std::optional<Rectangle>& within)
     : DensityTrees(std::move(trees)), cell_size(side), corner(low) {
   const double volume = cell_size * cell_size * cell_size;
   const Occupied leaves = occupiedOf(*density);
   occupied = leaves.cells;
   leaf_area = leaves.sum * volume;
-  if (!leaves.tiles) crown_area = static_cast<double>(occupiedColumns(*density)) * cell_size * cell_size;
+  if (!leaves.tiles) crown_area = occupiedColumns(*density, within) * cell_size * cell_size;
+  if (!optics.empty() && leaves.sum > 0.) mean_optics = meanOver(*density, optics);
   if (wood) {
     const Occupied blocked = occupiedOf(*wood);
     wood_cells = blocked.cells;
@@ -128,22 +167,31 @@ DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low
 
 std::vector<DensityGrid::Cells::Named> DensityGrid::Cells::named() const {
   const auto bytes = [](const FloatTree& tree) { return static_cast<std::size_t>(tree.memUsage()); };
+  const auto kept = [](FloatTreePtr tree) { return [tree] { return tree; }; };
   std::vector<Named> all{{kDensityName, "1/m",
-                          "one-sided leaf area density: leaf area in a cell over the volume of the cell", density,
+                          "one-sided leaf area density: leaf area in a cell over the volume of the cell", kept(density),
                           occupied, bytes(*density)}};
   if (!moments.empty())
-    for (const char* name : kNormalNames) {
-      const std::string axes = std::string(name).substr(7);
+    for (std::size_t i = 0; i < kNormalNames.size(); ++i) {
+      const std::string name = kNormalNames[i], axes = name.substr(7);
       all.push_back({name, "1",
                      "second moment M_" + axes + " of leaf normals: mean of n_" + axes[0] + " n_" + axes[1] +
                          " over the leaf area in a cell; M_zz = 1 - M_xx - M_yy",
-                     nullptr, occupied, occupied * sizeof(float)});
+                     [this, i] { return momentTree(i); }, occupied, occupied * sizeof(float)});
+    }
+  if (!optics.empty())
+    for (std::size_t i = 0; i < kOpticsNames.size(); ++i) {
+      const std::string name = kOpticsNames[i], band = name.substr(name.find('_') + 1);
+      all.push_back({name, "1",
+                     "share of the arriving " + band + " light that leaves " +
+                         (name.starts_with("r") ? "reflect" : "transmit") + ": mean over the leaf area in a cell",
+                     [this, i] { return opticsTree(i); }, occupied, occupied * sizeof(float)});
     }
   if (wood)
     all.push_back({kWoodName, "1/m",
                    "extinction by wood: its projected area in a cell, mean of all directions, over the "
                    "volume of the cell",
-                   wood, wood_cells, bytes(*wood)});
+                   kept(wood), wood_cells, bytes(*wood)});
   return all;
 }
 
@@ -157,6 +205,15 @@ float DensityGrid::at(glm::vec3 position) const {
 LeafOrientation DensityGrid::orientationAt(glm::vec3 position) const {
   const auto cell = cellAt(*cells_, position);
   return cell ? cells_->orientation(*cell) : LeafOrientation{};
+}
+
+std::optional<BandOptics> DensityGrid::opticsAt(glm::vec3 position) const {
+  const auto cell = cellAt(*cells_, position);
+  return cell ? cells_->opticsOf(*cell) : std::nullopt;
+}
+
+std::optional<BandOptics> DensityGrid::meanOptics() const {
+  return cells_->mean_optics;
 }
 
 float DensityGrid::woodAt(glm::vec3 position) const {

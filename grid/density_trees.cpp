@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <bit>
+#include <optional>
 #include <utility>
 
 #include "grid/detail/density_cells.hpp"
@@ -22,6 +23,30 @@ std::size_t activeBefore(const Leaf& leaf, openvdb::Index cell) {
   return before + count(leaf.valueMask().getWord<Word>(cell / bits) & ((Word{1} << cell % bits) - 1));
 }
 
+// Of a cell, what is kept for the active cells of each block; none elsewhere.
+template <typename Value>
+std::optional<Value> valueOf(const FloatTree& density, const std::vector<std::vector<Value>>& of_blocks,
+                             const openvdb::Coord& cell) {
+  if (of_blocks.empty()) return {};
+  const Leaf* leaf = density.probeConstLeaf(cell);
+  const openvdb::Index i = Leaf::coordToOffset(cell);
+  if (!leaf || !leaf->isValueOn(i)) return {};
+  return of_blocks[leaf->transientData()][activeBefore(*leaf, i)];
+}
+
+// `part(value)` of what is kept for the active cells, as a tree of its own.
+template <typename Value, typename Part>
+FloatTreePtr treeOf(const FloatTree& density, const std::vector<std::vector<Value>>& of_blocks, const Part& part) {
+  auto tree = std::make_shared<FloatTree>(density, 0.f, openvdb::TopologyCopy());
+  std::vector<Leaf*> blocks;
+  tree->getNodes(blocks);
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t block) {
+    auto value = of_blocks[blocks[block]->transientData()].begin();
+    for (auto cell = blocks[block]->beginValueOn(); cell; ++cell) cell.setValue(part(*value++));
+  });
+  return tree;
+}
+
 }  // namespace
 
 DensityTrees::DensityTrees(std::vector<BlockOfCells> leaves) {
@@ -29,6 +54,7 @@ DensityTrees::DensityTrees(std::vector<BlockOfCells> leaves) {
     if (block.leaf->isEmpty()) continue;
     block.leaf->setTransientData(static_cast<openvdb::Index32>(moments.size()));
     moments.push_back(std::move(block.moments));
+    if (!block.optics.empty()) optics.push_back(std::move(block.optics));
     density->addLeaf(block.leaf.release());
   }
 }
@@ -40,22 +66,19 @@ void DensityTrees::setWood(std::vector<BlockOfCells> blocks) {
 }
 
 LeafOrientation DensityTrees::orientation(const openvdb::Coord& cell) const {
-  if (moments.empty()) return {};
-  const Leaf* leaf = density->probeConstLeaf(cell);
-  const openvdb::Index i = Leaf::coordToOffset(cell);
-  if (!leaf || !leaf->isValueOn(i)) return {};
-  return moments[leaf->transientData()][activeBefore(*leaf, i)];
+  return valueOf(*density, moments, cell).value_or(LeafOrientation{});
+}
+
+std::optional<BandOptics> DensityTrees::opticsOf(const openvdb::Coord& cell) const {
+  return valueOf(*density, optics, cell);
 }
 
 FloatTreePtr DensityTrees::momentTree(std::size_t i) const {
-  auto tree = std::make_shared<FloatTree>(*density, 0.f, openvdb::TopologyCopy());
-  std::vector<Leaf*> blocks;
-  tree->getNodes(blocks);
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t block) {
-    auto moment = moments[blocks[block]->transientData()].begin();
-    for (auto cell = blocks[block]->beginValueOn(); cell; ++cell) cell.setValue(*moment++.*kMoments[i]);
-  });
-  return tree;
+  return treeOf(*density, moments, [i](const LeafOrientation& moment) { return moment.*kMoments[i]; });
+}
+
+FloatTreePtr DensityTrees::opticsTree(std::size_t i) const {
+  return treeOf(*density, optics, [i](const BandOptics& of_cell) { return opticsValue(of_cell, i); });
 }
 
 }  // namespace sunfleck

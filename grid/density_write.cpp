@@ -47,8 +47,7 @@ void writeVdb(const openvdb::GridCPtrVec& grids, const fs::path& file) {
 openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridSource& source) {
   openvdb::GridCPtrVec all;
   for (const DensityGrid::Cells::Named& named : cells.named()) {
-    // Moments stand next to the density.
-    auto grid = openvdb::FloatGrid::create(named.tree ? named.tree : cells.momentTree(all.size() - 1));
+    auto grid = openvdb::FloatGrid::create(named.tree());
     auto transform = openvdb::math::Transform::createLinearTransform(cells.cell_size);
     const glm::dvec3 centre = cells.corner + 0.5 * cells.cell_size;  // of cell (0, 0, 0)
     transform->postTranslate(openvdb::Vec3d(centre.x, centre.y, centre.z));
@@ -71,7 +70,7 @@ openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridS
       number("period_y_m", cells.period->y);
     }
     if (!source.hash.empty()) text("source_hash", source.hash);
-    if (named.tree == cells.density) {
+    if (named.name == kDensityName) {
       number("leaf_area_m2", cells.leaf_area);
       if (cells.crown_area > 0.) {
         number("crown_area_m2", cells.crown_area);
@@ -79,7 +78,7 @@ openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridS
       }
       if (!cells.moments.empty()) text("projection_model", kProjection);
     }
-    if (named.tree == cells.wood) number("projected_wood_area_m2", cells.wood_area);
+    if (named.name == kWoodName) number("projected_wood_area_m2", cells.wood_area);
     all.push_back(grid);
   }
   return all;

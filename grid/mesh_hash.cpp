@@ -19,13 +19,18 @@ std::string meshHash(const TreeMesh& mesh) {
   return to_string(hash);
 }
 
-std::string standHash(const TreeMesh& mesh, const Stand& stand) {
+std::string standHash(std::span<const TreeMesh* const> kinds, const Stand& stand, std::span<const BandOptics> optics) {
+  boost::uuids::uuid hash = boost::uuids::string_generator()(meshHash(*kinds[0]));
+  for (const TreeMesh* mesh : kinds.subspan(1)) hash = boost::uuids::name_generator_sha1(hash)(meshHash(*mesh));
   std::vector<float> numbers;
   for (const Placement& tree : stand.trees)
     numbers.insert(numbers.end(), {tree.position.x, tree.position.y, tree.position.z, tree.rotation});
   if (stand.period) numbers.insert(numbers.end(), {stand.period->x, stand.period->y});
-  const auto of_mesh = boost::uuids::string_generator()(meshHash(mesh));
-  return to_string(boost::uuids::name_generator_sha1(of_mesh)(numbers.data(), numbers.size() * sizeof(float)));
+  if (kinds.size() > 1)
+    for (const Placement& tree : stand.trees) numbers.push_back(static_cast<float>(tree.kind));
+  for (const BandOptics& of_kind : optics)
+    for (const LeafOptics& band : of_kind) numbers.insert(numbers.end(), {band.reflectance, band.transmittance});
+  return to_string(boost::uuids::name_generator_sha1(hash)(numbers.data(), numbers.size() * sizeof(float)));
 }
 
 }  // namespace sunfleck

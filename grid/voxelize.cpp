@@ -106,7 +106,8 @@ void validate(const TreeMesh& mesh, const Extents& leaves, const Extents& wood, 
   const auto check = [&](bool ok, const char* rule) {
     require(ok, "cell size [m]", static_cast<float>(cell_size), rule);
   };
-  check(cell_size >= 1e-6 && cell_size <= 1e6, "from 1e-6 to 1e6");
+  // OpenVDB knows no smaller cells: their volume is 0 to it.
+  check(cell_size >= static_cast<double>(2e-5f) && cell_size <= 1e6, "from 2e-5 to 1e6");
   if (leafBounds(mesh).empty()) throw InvalidInput("the tree has no leaves: at least one is needed for a density");
   const Bounds box = bounds(mesh);
   for (int axis = 0; axis < 3; ++axis) {
@@ -209,7 +210,7 @@ BlockOfCells blockOfCells(const TrianglesInCells& triangles, std::span<const Vis
   const glm::ivec3 block = blockOf(visits[0].block);
   const glm::ivec3 first = block * kBlock;
   const glm::ivec3 origin = (triangles.firstBlock() + block) * kBlock;
-  BlockOfCells made{std::make_unique<Leaf>(openvdb::Coord(origin.x, origin.y, origin.z), 0.f), {}};
+  BlockOfCells made{std::make_unique<Leaf>(openvdb::Coord(origin.x, origin.y, origin.z), 0.f), {}, {}};
   for (const Visit& visit : visits) {
     const ConvexPolygon whole = triangles.triangle(visit.visitor);
     const glm::dvec3 n = normal(whole);

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -91,16 +92,22 @@ glm::ivec3 blockHolding(const glm::ivec3& cell) {
   return cell >> 3;
 }
 
-// The blocks of all copies' grids of one kind, density or wood.
+// Cells of a kind of tree, turned by one of the rotations that trees of this kind have.
+struct Prototype {
+  DensityTrees trees;
+  std::optional<BandOptics> optics;  // of its leaves; none where they are not asked for
+};
+
+// The blocks of all copies' cells of leaves, or of those of wood.
 class Placed {
  public:
-  Placed(const std::vector<DensityTrees>& prototypes, FloatTreePtr DensityTrees::*kind, const std::vector<Copy>& copies,
+  Placed(const std::vector<Prototype>& prototypes, FloatTreePtr DensityTrees::*of, const std::vector<Copy>& copies,
          const Kept& kept)
       : prototypes_(prototypes), copies_(copies), kept_(kept) {
-    for (const DensityTrees& prototype : prototypes) {
+    for (const Prototype& prototype : prototypes) {
       blocks_.emplace_back();
       boxes_.emplace_back();
-      if (prototype.*kind) (prototype.*kind)->getNodes(blocks_.back());
+      if (prototype.trees.*of) (prototype.trees.*of)->getNodes(blocks_.back());
       for (const Leaf* leaf : blocks_.back()) leaf->evalActiveBoundingBox(boxes_.back().emplace_back());
     }
     std::size_t count = 0;
@@ -111,8 +118,10 @@ class Placed {
     first_.push_back(count);
   }
 
-  std::vector<BlockOfCells> blocks(double cell_size, const glm::ivec3& first_block, bool moments,
+  std::vector<BlockOfCells> blocks(double cell_size, const glm::ivec3& first_block, bool leaves,
                                    const Stage& stage) const {
+    const double bytes_of_cell =
+        leaves ? sizeof(LeafOrientation) + (prototypes_[0].optics ? sizeof(BandOptics) : 0.) : 0.;
     requireMemory(static_cast<double>(first_.back()) * kBytesOfVisit, cell_size);  // one at least, but beyond a period
     const SortedVisits sorted = visits(cell_size, first_block, stage);
     std::vector<double> cells_of;
@@ -123,21 +132,21 @@ class Placed {
     double cells = 0.;  // at most
     for (const Copy& copy : copies_) cells += 8. * cells_of[copy.prototype];
     const auto blocks = static_cast<double>(sorted.blocks());
-    requireMemory(
-        blocks * kBytesOfBlock + (moments ? std::min(cells, blocks * Leaf::SIZE) * sizeof(LeafOrientation) : 0.),
-        cell_size);
+    requireMemory(blocks * kBytesOfBlock + std::min(cells, blocks * Leaf::SIZE) * bytes_of_cell, cell_size);
     std::vector<BlockOfCells> made(sorted.blocks());
     tbb::enumerable_thread_specific<Sums> workspaces;
     stage.inBatches(made.size(), 0.4, 1., [&](std::size_t i) {
-      made[i] = block(sorted.ofBlock(i), first_block, moments, workspaces.local());
+      made[i] = block(sorted.ofBlock(i), first_block, leaves, workspaces.local());
     });
     stage.report(1.);
     return made;
   }
 
  private:
-  // Of each cell in use: density, and density times each moment.
-  using Sums = std::array<std::array<double, 6>, Leaf::SIZE>;
+  // Of each cell in use: density, and density times each moment and each of the optics.
+  static constexpr std::size_t kOptics = kOpticsNames.size(), kFirstOptics = 1 + kMoments.size();
+  using OfCell = std::array<double, kFirstOptics + kOptics>;
+  using Sums = std::array<OfCell, Leaf::SIZE>;
 
   // `act(key)` of each block in which a block of the copy has a part.
   template <typename Act>
@@ -178,10 +187,12 @@ class Placed {
     return SortedVisits(std::move(all));
   }
 
-  // (D2)
-  BlockOfCells block(std::span<const Visit> visits, const glm::ivec3& first_block, bool moments, Sums& sums) const {
+  // (D2), and (D11) where there are optics
+  BlockOfCells block(std::span<const Visit> visits, const glm::ivec3& first_block, bool leaves, Sums& sums) const {
     const glm::ivec3 origin = (blockOf(visits[0].block) + first_block) * kBlock;
-    BlockOfCells made{std::make_unique<Leaf>(toCoord(origin), 0.f), {}};
+    BlockOfCells made{std::make_unique<Leaf>(toCoord(origin), 0.f), {}, {}};
+    const bool with_optics = leaves && prototypes_[0].optics;
+    const std::size_t used = with_optics ? kFirstOptics + kOptics : leaves ? kFirstOptics : 1;
     for (const Visit& visit : visits) {
       const std::size_t i =
           static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), visit.visitor) - first_.begin()) - 1;
@@ -192,11 +203,17 @@ class Placed {
                            kept_.high[axis]);
       };
       const SharesAlong x_shares = along(0), y_shares = along(1), z_shares = along(2);
-      const LeafOrientation* moment =
-          moments ? prototypes_[copy.prototype].moments[source.transientData()].data() : nullptr;
+      const Prototype& prototype = prototypes_[copy.prototype];
+      const LeafOrientation* moment = leaves ? prototype.trees.moments[source.transientData()].data() : nullptr;
+      OfCell values{1.};
+      if (with_optics)
+        for (std::size_t i = 0; i < kOptics; ++i)
+          values[kFirstOptics + i] = static_cast<double>(opticsValue(*prototype.optics, i));
       for (auto cell = source.cbeginValueOn(); cell; ++cell) {
-        const LeafOrientation m = moment ? *moment++ : LeafOrientation{};
-        const std::array<double, 6> values{1., double{m.xx}, double{m.yy}, double{m.xy}, double{m.xz}, double{m.yz}};
+        if (moment) {
+          for (std::size_t i = 0; i < kMoments.size(); ++i) values[1 + i] = static_cast<double>(moment->*kMoments[i]);
+          ++moment;
+        }
         const auto density = static_cast<double>(*cell);
         const openvdb::Coord at = Leaf::offsetToLocalCoord(cell.pos());
         for (const auto& x : x_shares.of[static_cast<std::size_t>(at.x())])
@@ -209,7 +226,7 @@ class Placed {
                 made.leaf->setActiveState(target, true);
                 sums[target] = {};
               }
-              for (std::size_t k = 0; k < values.size(); ++k) sums[target][k] += share * values[k];
+              for (std::size_t k = 0; k < used; ++k) sums[target][k] += share * values[k];
             }
       }
     }
@@ -217,15 +234,19 @@ class Placed {
       const auto& sum = sums[cell.pos()];
       cell.setValue(static_cast<float>(sum[0]));
       const auto mean = [&](std::size_t k) { return static_cast<float>(sum[k] / sum[0]); };
-      if (*cell == 0.f)
+      if (*cell == 0.f) {
         cell.setValueOff();
-      else if (moments)
-        made.moments.push_back({mean(1), mean(2), mean(3), mean(4), mean(5)});
+        continue;
+      }
+      if (leaves) made.moments.push_back({mean(1), mean(2), mean(3), mean(4), mean(5)});
+      if (!with_optics) continue;
+      BandOptics& optics = made.optics.emplace_back();
+      for (std::size_t i = 0; i < kOptics; ++i) opticsValue(optics, i) = mean(kFirstOptics + i);
     }
     return made;
   }
 
-  const std::vector<DensityTrees>& prototypes_;
+  const std::vector<Prototype>& prototypes_;
   const std::vector<Copy>& copies_;
   Kept kept_;
   std::vector<std::vector<const Leaf*>> blocks_;        // of each prototype
@@ -233,20 +254,23 @@ class Placed {
   std::vector<std::size_t> first_;                      // block of each copy among those of all, and the end
 };
 
-void validate(const Stand& stand) {
+void validate(const Stand& stand, std::size_t kinds, float cell_size) {
   require(!stand.trees.empty(), "number of trees", stand.trees.size(), "at least 1");
   for (std::size_t i = 0; i < stand.trees.size(); ++i) {
     const auto& [position, rotation, kind] = stand.trees[i];
     const std::string name = "tree " + std::to_string(i) + " ";
-    require(kind == 0, name + "kind", kind, "0");
-    require(std::isfinite(rotation), name + "rotation [rad]", rotation, "finite");
+    require(kind < kinds, name + "kind", kind, "below the number of kinds, " + std::to_string(kinds));
+    require(std::isfinite(rotation), name + "rotation", rotation, "finite");
     for (int axis = 0; axis < 3; ++axis)
       require(std::isfinite(position[axis]), name + "position [m]", position[axis], "finite");
   }
-  if (stand.period)
-    for (int axis = 0; axis < 2; ++axis)
-      require(std::isfinite((*stand.period)[axis]) && (*stand.period)[axis] > 0.f, "period [m]", (*stand.period)[axis],
-              "above 0");
+  if (!stand.period) return;
+  for (int axis = 0; axis < 2; ++axis) {
+    const float side = (*stand.period)[axis];
+    require(std::isfinite(side) && side > 0.f, "period [m]", side, "above 0");
+    require(!(cell_size > side), "cell size [m]", cell_size,
+            "at most a side of the period, " + std::to_string(side) + " m");
+  }
 }
 
 // Box of the cells of leaves and wood.
@@ -268,14 +292,14 @@ struct Arrangement {
   std::vector<Copy> copies;
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 
-  Arrangement(const Stand& stand, const std::vector<DensityTrees>& prototypes,
+  Arrangement(const Stand& stand, const std::vector<Prototype>& prototypes,
               const std::vector<std::size_t>& prototype_of_tree, double cell_size) {
     const glm::dvec2 period = stand.period ? glm::dvec2(inCells(static_cast<double>(stand.period->x), cell_size),
                                                         inCells(static_cast<double>(stand.period->y), cell_size))
                                            : glm::dvec2(0.);
     if (stand.period) keepPeriod(stand, period, cell_size);
     std::vector<openvdb::CoordBBox> boxes;
-    for (const DensityTrees& prototype : prototypes) boxes.push_back(boxOf(prototype));
+    for (const Prototype& prototype : prototypes) boxes.push_back(boxOf(prototype.trees));
     for (std::size_t tree = 0; tree < stand.trees.size(); ++tree) {
       const std::size_t prototype = prototype_of_tree[tree];
       const glm::dvec3 position(stand.trees[tree].position);
@@ -288,9 +312,12 @@ struct Arrangement {
       };
       const auto [first_x, last_x] = images(0);
       const auto [first_y, last_y] = images(1);
-      requireCells(
-          static_cast<double>(copies.size()) + (last_x - first_x + 1.) * (last_y - first_y + 1.) <= kMostCopies,
-          cell_size, "such that the stand needs at most 2^24 copies of its tree");
+      const double count = static_cast<double>(copies.size()) + (last_x - first_x + 1.) * (last_y - first_y + 1.);
+      if (stand.period)
+        require(count <= kMostCopies, "period [m]", std::min(stand.period->x, stand.period->y),
+                "so long that at most 2^24 trees reach into one period, those of its neighbours included");
+      else
+        require(count <= kMostCopies, "number of trees", stand.trees.size(), "at most 2^24");
       for (double x = first_x; x <= last_x; ++x)
         for (double y = first_y; y <= last_y; ++y) {
           const glm::dvec3 image(x, y, 0.);
@@ -333,37 +360,53 @@ struct Arrangement {
 
 }  // namespace
 
-DensityGrid DensityGrid::voxelizeStand(const TreeMesh& mesh, const Stand& stand, float cell_size,
-                                       const Progress& progress) {
+DensityGrid DensityGrid::voxelizeStand(std::span<const TreeMesh* const> kinds, const Stand& stand, float cell_size,
+                                       std::span<const BandOptics> optics, const Progress& progress) {
   const double side = static_cast<double>(cell_size);
-  validate(stand);
-  std::map<float, std::size_t> prototype_of_rotation;
+  validate(stand, kinds.size(), cell_size);
+  require(optics.empty() || optics.size() == kinds.size(), "number of kinds of trees with optics", optics.size(),
+          "0 or that of all kinds, " + std::to_string(kinds.size()));
+  for (const BandOptics& of_kind : optics)
+    for (const LeafOptics& band : of_kind) sunfleck::validate(band);
+
+  std::map<std::pair<std::uint32_t, float>, std::size_t> prototype_of;  // of a kind and a rotation
   std::vector<std::size_t> prototype_of_tree;
   for (const Placement& tree : stand.trees)
     prototype_of_tree.push_back(
-        prototype_of_rotation.try_emplace(tree.rotation, prototype_of_rotation.size()).first->second);
-  std::vector<DensityTrees> prototypes(prototype_of_rotation.size());
+        prototype_of.try_emplace({tree.kind, tree.rotation}, prototype_of.size()).first->second);
+  std::vector<Prototype> prototypes(prototype_of.size());
   double done = 0.;
-  for (const auto& [rotation, prototype] : prototype_of_rotation) {
+  bool wood = false;
+  for (const auto& [what, number] : prototype_of) {
+    const auto& [kind, rotation] = what;
     const double part = 0.5 / static_cast<double>(prototypes.size());
     const Progress partly = [&](double share) { return goOn(progress, done + part * share); };
-    const DensityGrid grid = voxelize(rotation == 0.f ? mesh : turned(mesh, rotation), cell_size, partly);
+    const DensityGrid grid = rotation == 0.f ? voxelize(*kinds[kind], cell_size, partly)
+                                             : voxelize(turned(*kinds[kind], rotation), cell_size, partly);
     requireMemory(static_cast<double>(grid.memoryBytes() * prototypes.size()), side);
-    prototypes[prototype] = *grid.cells_;
+    prototypes[number].trees = *grid.cells_;
+    if (!optics.empty()) prototypes[number].optics = optics[kind];
+    wood = wood || prototypes[number].trees.wood;
     done += part;
   }
 
   const Arrangement arrangement(stand, prototypes, prototype_of_tree, side);
   const glm::ivec3 first_block = blockHolding(glm::ivec3(arrangement.low));
-  const auto placed = [&](FloatTreePtr DensityTrees::*kind, const Stage& stage) {
-    return Placed(prototypes, kind, arrangement.copies, arrangement.kept)
-        .blocks(side, first_block, kind == &DensityTrees::density, stage);
+  const auto placed = [&](FloatTreePtr DensityTrees::*of, const Stage& stage) {
+    return Placed(prototypes, of, arrangement.copies, arrangement.kept)
+        .blocks(side, first_block, of == &DensityTrees::density, stage);
   };
   DensityTrees trees(placed(&DensityTrees::density, {progress, 0.5, 0.9}));
-  if (!mesh.wood_triangles.empty()) trees.setWood(placed(&DensityTrees::wood, {progress, 0.9, 1.}));
-  auto cells = std::make_shared<Cells>(std::move(trees), side, glm::dvec3(0.));
+  if (wood) trees.setWood(placed(&DensityTrees::wood, {progress, 0.9, 1.}));
+  std::optional<Cells::Rectangle> period;
+  if (stand.period) period = {glm::dvec2(arrangement.kept.low), glm::dvec2(arrangement.kept.high)};
+  auto cells = std::make_shared<Cells>(std::move(trees), side, glm::dvec3(0.), period);
   if (stand.period) cells->period = *stand.period;
   return DensityGrid(std::move(cells));
+}
+
+DensityGrid DensityGrid::voxelizeStand(const TreeMesh& mesh, const Stand& stand, float cell_size) {
+  return voxelizeStand(std::array{&mesh}, stand, cell_size);
 }
 
 }  // namespace sunfleck

@@ -33,8 +33,8 @@ struct TreeKind {
   std::string source;  // what the leaves came from: a file or a species with its seed
   Dropped dropped;     // triangles of no area that the file held
   std::shared_ptr<const TreeMesh> mesh;
-  std::array<LeafOptics, kBands> leaf;  // per band
-  glm::vec3 wood_reflectance{0.3f};     // Lambertian, per band [1], 0 .. 1
+  BandOptics leaf;
+  glm::vec3 wood_reflectance{0.3f};  // Lambertian, per band [1], 0 .. 1
 };
 
 // What is simulated: kinds of trees, where they stand, the ground and the sun.

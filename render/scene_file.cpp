@@ -299,7 +299,8 @@ seed = 1
 # leaf_transmittance = 0.475
 # wood_reflectance = 0.3
 # Several kinds of trees: a [[tree]] with these keys for each, instead of [tree]; names must differ, and of each kind
-# stands one tree at least. Trees of a grid take the kinds in turn along x and along y.
+# stands one tree at least. Trees of a grid take the kinds in turn along x and along y. trace and voxelize --stand take
+# several kinds, validate and render one alone.
 
 [stand]
 kind = "single"               # single | periodic | grid | positions

@@ -1,5 +1,7 @@
 #include "render/stand_geometry.hpp"
 
+#include <cmath>
+#include <glm/trigonometric.hpp>
 #include <string>
 
 #include "core/require.hpp"
@@ -9,12 +11,14 @@ namespace sunfleck {
 
 void requireModelled(const Scene& scene) {
   const Stand& stand = scene.stand;
-  require(scene.kinds.size() == 1, "number of kinds of trees", scene.kinds.size(),
-          "1 for the models (trace takes any)");
-  require(stand.trees.size() <= kMostTrees, "number of trees", stand.trees.size(),
+  const std::string from = scene.origin.empty() ? "" : scene.origin + ": ";
+  require(scene.kinds.size() == 1, from + "number of kinds of trees", scene.kinds.size(),
+          "1 for the models, which know one leaf alone (trace and voxelize --stand take any)");
+  require(stand.trees.size() <= kMostTrees, from + "number of trees in [stand]", stand.trees.size(),
           "at most " + std::to_string(kMostTrees) + " for the models (trace takes any)");
-  for (const Placement& tree : stand.trees)
-    require(tree.rotation == 0.f, "rotation of a tree", tree.rotation,
+  for (std::size_t i = 0; i < stand.trees.size(); ++i)
+    require(stand.trees[i].rotation == 0.f, from + "stand.positions: rotation_deg of tree " + std::to_string(i + 1),
+            std::round(glm::degrees(stand.trees[i].rotation) * 1e4f) / 1e4f,
             "0 for the models: their maps serve translated copies only (trace takes any)");
   const Bounds box = leafBounds(*scene.kinds[0].mesh);
   periodsAround(stand, box);

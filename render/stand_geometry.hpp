@@ -23,9 +23,9 @@ struct GeometryEffort {
 // The models hold numbers for every leaf of every tree.
 inline constexpr std::size_t kMostTrees = 1024;
 
-// Throws InvalidInput on a stand that the models cannot treat: one with a rotated tree, since a prototype's maps serve
-// its translated copies only (Eq. 31), with more than kMostTrees trees, or with a period much shorter than the tree is
-// wide.
+// Throws InvalidInput on a stand that the models cannot treat: one of several kinds of trees, one with a rotated tree,
+// since a prototype's maps serve its translated copies only (Eq. 31), with more than kMostTrees trees, or with a period
+// much shorter than the tree is wide.
 void requireModelled(const Scene& scene);
 
 // What leaves and fragments read to be shaded, whatever their optics: the prototype's map along the light, and the

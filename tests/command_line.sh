@@ -130,7 +130,17 @@ refuses "deep.toml:1" trace deep.toml
 printf '[tree]\nfile = "leaf.obj"\n[ground]\nalbedo = 0.2\n' >ground.toml
 printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "positions"\npositions = [[0, 0, 45]]\n' >rotated.toml
 refuses "ground albedo" validate ground.toml
-refuses "rotation" validate rotated.toml
+refuses "rotated.toml: stand.positions: rotation_deg of tree 1 = 45" validate rotated.toml
+printf '[[tree]]\nfile = "leaf.obj"\n[[tree]]\nfile = "leaf.obj"\nname = "dark"\nleaf_reflectance = 0.1\n' >kinds.toml
+refuses "kinds.toml: [stand] has no place for a tree of kind \"dark\"" trace kinds.toml
+printf '[stand]\nkind = "positions"\npositions = [[0, 0, "dark"], [3, 0, "leaf"]]\n' >>kinds.toml
+refuses "number of kinds of trees = 2" validate kinds.toml
+refuses "number of kinds of trees = 2" render kinds.toml -o x.png
+refuses "with --stand" voxelize kinds.toml
+refuses "without --stand" voxelize leaf.obj --period 3 3
+refuses "in [1e-6, 1e6] m" voxelize leaf.obj --stand --period 1e-9 3
+refuses "at most a side of the period" voxelize leaf.obj --stand --period 2 3 --cell-size 2.5
+refuses "in [2e-5, 1e6] m" voxelize leaf.obj --cell-size 1e-5 -o x.vdb
 refuses "rotation" render rotated.toml -o x.png
 refuses "period" validate leaf.obj --period 0.01 0.01
 refuses "--only-picture" trace leaf.obj --only-picture -o x.csv
@@ -268,6 +278,11 @@ does "cells" voxelize leaf.obj -o leaf.vdb --cell-size 0.1
 does "cells" voxelize leaf.vdb
 does "one period of 2 m x 3 m" voxelize leaf.obj --stand --period 2 3 -o stand.vdb --cell-size 0.1
 refuses "--stand" voxelize leaf.vdb --stand
+refuses "--cell-size" voxelize leaf.vdb --cell-size 0.1
+does "transmittance_blue" voxelize kinds.toml --stand --cell-size 0.1 -o kinds.vdb
+does "mean_reflectance" voxelize kinds.vdb --json
+does "reflectance_red" voxelize leaf.obj --optics --cell-size 0.1 -o leaf_optics.nvdb
+"$program" trace kinds.toml --paths 1000 -o leaves.csv >/dev/null && grep -q "^dark,0," leaves.csv || fail "trace: no kind"
 # What other programs are told.
 vdb_print -l stand.vdb >printed || fail "vdb_print: status $?"
 for line in "Name: density" "Name: normal_yz" "class: fog volume" "creator: Sunfleck .*, commit" "leaf_area_m2: " \

@@ -70,7 +70,7 @@ struct Stage {
   // Runs `work(i)` for all i < count in parallel and tells progress from `from` to `to` between batches.
   template <typename Work>
   void inBatches(std::size_t count, double from, double to, const Work& work) const {
-    constexpr std::size_t batches = 16;
+    constexpr std::size_t batches = 64;
     for (std::size_t batch = 0; batch < batches; ++batch) {
       report(from + (to - from) * static_cast<double>(batch) / batches);
       tbb::parallel_for(count * batch / batches, count * (batch + 1) / batches, work);
