@@ -1,11 +1,14 @@
 #include "grid/deep_opacity_map.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/concurrent_queue.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -34,36 +37,78 @@ Bounds boxOf(const std::vector<glm::uvec3>& triangles, const glm::vec3* position
       });
 }
 
-// Where a triangle meets the line of a pixel.
-struct Fragment {
-  std::uint32_t pixel;
-  Crossing crossing;
+// The pixels of a row whose lines meet a triangle.
+struct Span {
+  std::uint32_t pixel, length;  // the first, and how many
+  float depth, slope;           // at the first, and more with each further one [m]
+  std::uint32_t leaf;
 };
 
-// What one task found in a band.
+// What a thread found in a band.
 struct Found {
-  std::vector<Fragment> leaves, wood;
+  std::vector<Span> leaves, wood;
+  std::uint32_t crossings = 0;  // of leaves
 };
 
-bool before(const Crossing& a, const Crossing& b) {
-  return (a.depth < b.depth) | ((a.depth == b.depth) & (a.leaf < b.leaf));
+using Rank = std::uint64_t;  // see rankOf
+
+// Memory in which maps are made. It is kept for the next map, since what the system gives anew it clears page by page,
+// which would take as long as the work.
+struct Workspace {
+  struct OfThread {
+    std::array<Found, kBands> found;
+    std::vector<std::uint32_t> next;  // of each pixel of a band, where the next crossing goes
+    std::vector<Rank> crossings;      // of a band
+  };
+  std::vector<glm::vec3> projected;  // of the vertices, (right, up, depth) [m]
+  tbb::enumerable_thread_specific<OfThread> threads;
+};
+
+// A workspace lent to a map.
+class LentWorkspace {
+ public:
+  LentWorkspace() {
+    if (!idle_.try_pop(lent_)) lent_ = std::make_unique<Workspace>();
+  }
+  ~LentWorkspace() { idle_.push(std::move(lent_)); }
+  LentWorkspace(const LentWorkspace&) = delete;
+  LentWorkspace& operator=(const LentWorkspace&) = delete;
+  Workspace& operator*() { return *lent_; }
+
+ private:
+  static inline tbb::concurrent_queue<std::unique_ptr<Workspace>> idle_;
+  std::unique_ptr<Workspace> lent_;
+};
+
+// A crossing as a number that is greater the deeper it lies, and of equal ones the one with the greater leaf.
+constexpr std::uint32_t kSign = 1u << 31;
+
+Rank rankOf(const Crossing& crossing) {
+  const auto bits = std::bit_cast<std::uint32_t>(crossing.depth);
+  return Rank{bits & kSign ? ~bits : bits | kSign} << 32 | crossing.leaf;
+}
+Crossing crossingOf(Rank rank) {
+  const auto bits = static_cast<std::uint32_t>(rank >> 32);
+  return {std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits), static_cast<std::uint32_t>(rank)};
 }
 
-// Sorts the crossings of a line by depth. Most lines have a few, in which each finds its place by counting those before
+// Writes the crossings of a line by depth. Most lines have a few, in which each finds its place by counting those before
 // it: without branches, as no processor foresees them.
-void sortByDepth(std::span<Crossing> line) {
+void sortByDepth(std::span<Rank> line, Crossing* sorted) {
   constexpr std::size_t kFew = 16;
-  if (line.size() > kFew) return std::sort(line.begin(), line.end(), before);
-  std::array<std::size_t, kFew> place{};
+  if (line.size() > kFew) {
+    std::sort(line.begin(), line.end());
+    for (const Rank rank : line) *sorted++ = crossingOf(rank);
+    return;
+  }
+  std::array<std::uint32_t, kFew> place{};
   for (std::size_t i = 1; i < line.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const bool swap = before(line[i], line[j]);
+      const bool swap = line[i] < line[j];
       place[i] += !swap;
       place[j] += swap;
     }
-  std::array<Crossing, kFew> unsorted;
-  std::copy(line.begin(), line.end(), unsorted.begin());
-  for (std::size_t i = 0; i < line.size(); ++i) line[place[i]] = unsorted[i];
+  for (std::size_t i = 0; i < line.size(); ++i) sorted[place[i]] = crossingOf(line[i]);
 }
 
 }  // namespace
@@ -71,12 +116,15 @@ void sortByDepth(std::span<Crossing> line) {
 DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, bool with_wood)
     : axes_(axesAlong(along)) {
   assert(resolution >= 1);
-  const auto projected = std::make_unique_for_overwrite<glm::vec3[]>(mesh.vertices.size());
+  LentWorkspace lent;
+  Workspace& workspace = *lent;
+  auto& projected = workspace.projected;
+  projected.resize(mesh.vertices.size());
   tbb::parallel_for(Range(0, mesh.vertices.size(), kTask), [&](const Range& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) projected[i] = inMap(mesh.vertices[i]);
   });
-  Bounds box = boxOf(mesh.leaf_triangles, projected.get());
-  box.include(boxOf(mesh.wood_triangles, projected.get()));
+  Bounds box = boxOf(mesh.leaf_triangles, projected.data());
+  box.include(boxOf(mesh.wood_triangles, projected.data()));
   const glm::vec2 extent = box.size();
   pixel_size_ = std::max({extent.x, extent.y, 1e-6f}) / static_cast<float>(resolution);
   size_ = glm::clamp(glm::ivec2(glm::ceil(extent / pixel_size_)), 1, resolution);
@@ -90,15 +138,22 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
   const int band_rows = (size_.y + int{kBands} - 1) / int{kBands};
   const std::size_t leaves = mesh.leaf_triangles.size();
   const std::size_t triangles = leaves + (with_wood ? mesh.wood_triangles.size() : 0);
-  std::vector<std::array<Found, kBands>> found((triangles + kTask - 1) / kTask);  // tasks share nothing
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t task) {
-    const auto find = [&](const glm::uvec3& t, std::vector<Fragment> Found::*kind, std::uint32_t leaf) {
+  for (auto& of_thread : workspace.threads)
+    for (Found& band : of_thread.found) {
+      band.leaves.clear();
+      band.wood.clear();
+      band.crossings = 0;
+    }
+  tbb::parallel_for(std::size_t{0}, (triangles + kTask - 1) / kTask, [&](std::size_t task) {
+    std::array<Found, kBands>& in_bands = workspace.threads.local().found;
+    const auto find = [&](const glm::uvec3& t, std::vector<Span> Found::*kind, std::uint32_t leaf) {
       detail::scanTriangle({inPixels(t.x), inPixels(t.y), inPixels(t.z)}, size_,
-                           [&](int y, int x_first, int x_end, const auto& depth) {
-                             auto& fragments = found[task][static_cast<std::size_t>(y / band_rows)].*kind;
-                             auto pixel = static_cast<std::uint32_t>(pixelNumber(x_first, y));
-                             for (int x = x_first; x < x_end; ++x)
-                               fragments.push_back({pixel++, {static_cast<float>(depth(x)), leaf}});
+                           [&](int y, int x_first, int x_end, double depth, double slope) {
+                             Found& band = in_bands[static_cast<std::size_t>(y / band_rows)];
+                             const auto length = static_cast<std::uint32_t>(x_end - x_first);
+                             (band.*kind).push_back({static_cast<std::uint32_t>(pixelNumber(x_first, y)), length,
+                                                  static_cast<float>(depth), static_cast<float>(slope), leaf});
+                             if (leaf != kNoLeaf) band.crossings += length;
                            });
     };
     const std::size_t end = std::min(triangles, (task + 1) * kTask);
@@ -110,29 +165,51 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
   std::array<std::uint32_t, kBands + 1> band_first{};
   for (std::size_t band = 0; band < kBands; ++band) {
     band_first[band + 1] = band_first[band];
-    for (const auto& of_task : found) band_first[band + 1] += static_cast<std::uint32_t>(of_task[band].leaves.size());
+    for (const auto& of_thread : workspace.threads) band_first[band + 1] += of_thread.found[band].crossings;
   }
   const std::size_t pixels = pixelNumber(0, size_.y);
-  first_.assign(pixels + 1, 0u);
+  first_.resize(pixels + 1);
   first_.back() = band_first.back();
   crossings_ = std::make_unique_for_overwrite<Crossing[]>(first_.back());
-  if (with_wood) wood_depth_.assign(pixels, std::numeric_limits<float>::infinity());
+  if (with_wood) wood_depth_.resize(pixels);
   tbb::parallel_for(std::size_t{0}, kBands, [&](std::size_t band) {
     const auto rowsBefore = [&](std::size_t bands) { return std::min(size_.y, static_cast<int>(bands) * band_rows); };
     const std::size_t begin = pixelNumber(0, rowsBefore(band)), end = pixelNumber(0, rowsBefore(band + 1));
-    for (const auto& of_task : found)
-      for (const Fragment& fragment : of_task[band].leaves) ++first_[fragment.pixel];
-    std::uint32_t sum = band_first[band];
-    for (std::size_t pixel = begin; pixel < end; ++pixel) first_[pixel] = sum += first_[pixel];
-    for (const auto& of_task : found)
-      for (const Fragment& fragment : of_task[band].leaves) crossings_[--first_[fragment.pixel]] = fragment.crossing;
-    for (std::size_t pixel = begin; pixel < end; ++pixel) {
-      const std::uint32_t next = pixel + 1 < end ? first_[pixel + 1] : band_first[band + 1];
-      sortByDepth({&crossings_[first_[pixel]], next - first_[pixel]});
+    Workspace::OfThread& work = workspace.threads.local();
+    auto& next = work.next;
+    next.assign(end - begin + 1, 0u);
+    work.crossings.resize(band_first[band + 1] - band_first[band]);
+    for (const auto& of_thread : workspace.threads)
+      for (const Span& span : of_thread.found[band].leaves) {
+        ++next[span.pixel - begin];
+        --next[span.pixel - begin + span.length];
+      }
+    std::uint32_t sum = 0, met = 0;
+    for (std::size_t pixel = 0; pixel < end - begin; ++pixel) {
+      met += next[pixel];
+      next[pixel] = sum;
+      sum += met;
     }
-    for (const auto& of_task : found)
-      for (const Fragment& fragment : of_task[band].wood)
-        wood_depth_[fragment.pixel] = std::min(wood_depth_[fragment.pixel], fragment.crossing.depth);
+    for (const auto& of_thread : workspace.threads)
+      for (const Span& span : of_thread.found[band].leaves)
+        for (std::uint32_t i = 0; i < span.length; ++i)
+          work.crossings[next[span.pixel - begin + i]++] =
+              rankOf({span.depth + static_cast<float>(i) * span.slope, span.leaf});
+    std::uint32_t first = 0;
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      const std::uint32_t of_pixel = next[pixel - begin] - first;
+      first_[pixel] = band_first[band] + first;
+      if (of_pixel) sortByDepth(std::span(work.crossings).subspan(first, of_pixel), &crossings_[first_[pixel]]);
+      first += of_pixel;
+    }
+    if (!with_wood) return;
+    for (std::size_t pixel = begin; pixel < end; ++pixel) wood_depth_[pixel] = std::numeric_limits<float>::infinity();
+    for (const auto& of_thread : workspace.threads)
+      for (const Span& span : of_thread.found[band].wood)
+        for (std::uint32_t i = 0; i < span.length; ++i) {
+          float& depth = wood_depth_[span.pixel + i];
+          depth = std::min(depth, span.depth + static_cast<float>(i) * span.slope);
+        }
   });
 }
 

@@ -48,7 +48,7 @@ void scanTriangle(const std::array<glm::dvec3, 3>& corners, glm::ivec2 size, con
     const int x_end = std::min(size.x, static_cast<int>(std::max(column, other)));
     if (x_first >= x_end) continue;
     const double depth = whole.depth(centre), slope = (part.depth(centre) - depth) / (other - column);
-    visit(y, x_first, x_end, [=](int x) { return depth + (x + 1. - column) * slope; });
+    visit(y, x_first, x_end, depth + (x_first + 1. - column) * slope, slope);
   }
 }
 
