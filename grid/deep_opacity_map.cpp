@@ -20,7 +20,7 @@ namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t kTask = 4096;  // triangles or vertices that are worth a task
-constexpr std::size_t kBands = 16;   // of rows of pixels, each worth a task
+constexpr std::size_t kBands = 32;   // of rows of pixels, each worth a task
 
 // Box of some triangles, given the positions of their corners.
 Bounds boxOf(const std::vector<glm::uvec3>& triangles, const glm::vec3* positions) {
@@ -37,17 +37,10 @@ Bounds boxOf(const std::vector<glm::uvec3>& triangles, const glm::vec3* position
       });
 }
 
-// The pixels of a row whose lines meet a triangle.
-struct Span {
-  std::uint32_t pixel, length;  // the first, and how many
-  float depth, slope;           // at the first, and more with each further one [m]
-  std::uint32_t leaf;
-};
-
 // What a thread found in a band.
 struct Found {
-  std::vector<Span> leaves, wood;
-  std::uint32_t crossings = 0;  // of leaves
+  std::vector<detail::Span> leaves, wood;  // of triangles, and of no further interest which
+  std::uint32_t crossings = 0;             // of leaves
 };
 
 using Rank = std::uint64_t;  // see rankOf
@@ -59,6 +52,7 @@ struct Workspace {
     std::array<Found, kBands> found;
     std::vector<std::uint32_t> next;  // of each pixel of a band, where the next crossing goes
     std::vector<Rank> crossings;      // of a band
+    std::vector<detail::Span> spans;  // of some triangles
   };
   std::vector<glm::vec3> projected;  // of the vertices, (right, up, depth) [m]
   tbb::enumerable_thread_specific<OfThread> threads;
@@ -92,8 +86,8 @@ Crossing crossingOf(Rank rank) {
   return {std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits), static_cast<std::uint32_t>(rank)};
 }
 
-// Writes the crossings of a line by depth. Most lines have a few, in which each finds its place by counting those before
-// it: without branches, as no processor foresees them.
+// Writes the crossings of a line by depth. Most lines have a few, in which each finds its place by counting those
+// before it: without branches, as no processor foresees them.
 void sortByDepth(std::span<Rank> line, Crossing* sorted) {
   constexpr std::size_t kFew = 16;
   if (line.size() > kFew) {
@@ -130,37 +124,38 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
   size_ = glm::clamp(glm::ivec2(glm::ceil(extent / pixel_size_)), 1, resolution);
   corner_ = glm::vec2(box.centre()) - 0.5f * pixel_size_ * glm::vec2(size_);
 
-  const double pixels_per_metre = 1. / double{pixel_size_};
-  const auto inPixels = [&](std::uint32_t vertex) {
-    const glm::dvec3 at = projected[vertex];
-    return glm::dvec3((glm::dvec2(at) - glm::dvec2(corner_)) * pixels_per_metre + 0.5, at.z);
-  };
-  const int band_rows = (size_.y + int{kBands} - 1) / int{kBands};
-  const std::size_t leaves = mesh.leaf_triangles.size();
-  const std::size_t triangles = leaves + (with_wood ? mesh.wood_triangles.size() : 0);
+  const detail::PixelGrid pixel_grid{
+      .corner = corner_, .pixels_per_metre = 1. / double{pixel_size_}, .columns = size_.x, .rows = size_.y};
+  int band_rows_log2 = 0;  // each band has a power of two of rows
+  while ((size_.y - 1) >> band_rows_log2 >= int{kBands}) ++band_rows_log2;
   for (auto& of_thread : workspace.threads)
     for (Found& band : of_thread.found) {
       band.leaves.clear();
       band.wood.clear();
       band.crossings = 0;
     }
-  tbb::parallel_for(std::size_t{0}, (triangles + kTask - 1) / kTask, [&](std::size_t task) {
-    std::array<Found, kBands>& in_bands = workspace.threads.local().found;
-    const auto find = [&](const glm::uvec3& t, std::vector<Span> Found::*kind, std::uint32_t leaf) {
-      detail::scanTriangle({inPixels(t.x), inPixels(t.y), inPixels(t.z)}, size_,
-                           [&](int y, int x_first, int x_end, double depth, double slope) {
-                             Found& band = in_bands[static_cast<std::size_t>(y / band_rows)];
-                             const auto length = static_cast<std::uint32_t>(x_end - x_first);
-                             (band.*kind).push_back({static_cast<std::uint32_t>(pixelNumber(x_first, y)), length,
-                                                  static_cast<float>(depth), static_cast<float>(slope), leaf});
-                             if (leaf != kNoLeaf) band.crossings += length;
-                           });
-    };
-    const std::size_t end = std::min(triangles, (task + 1) * kTask);
-    std::size_t i = task * kTask;
-    for (; i < std::min(leaves, end); ++i) find(mesh.leaf_triangles[i], &Found::leaves, mesh.leaf_of_triangle[i]);
-    for (; i < end; ++i) find(mesh.wood_triangles[i - leaves], &Found::wood, kNoLeaf);
+  const detail::ScanConversion scan = detail::scanConversion();
+  const std::size_t room = std::max(kTask, static_cast<std::size_t>(size_.y));
+  const auto find = [&](const std::vector<glm::uvec3>& triangles, const auto& put) {
+    tbb::parallel_for(Range(0, triangles.size(), kTask), [&](const Range& range) {
+      Workspace::OfThread& work = workspace.threads.local();
+      work.spans.resize(room);
+      for (std::size_t i = range.begin(); i != range.end();) {
+        const detail::Scanned scanned =
+            scan(pixel_grid, projected.data(), &triangles[i], range.end() - i, work.spans.data(), room);
+        for (const detail::Span& span : std::span(work.spans).first(scanned.spans))
+          put(work.found[span.row >> band_rows_log2], span, i + span.triangle);
+        i += scanned.triangles;
+      }
+    });
+  };
+  find(mesh.leaf_triangles, [&](Found& band, detail::Span span, std::size_t triangle) {
+    span.triangle = mesh.leaf_of_triangle[triangle];
+    band.leaves.push_back(span);
+    band.crossings += span.length;
   });
+  if (with_wood)
+    find(mesh.wood_triangles, [](Found& band, const detail::Span& span, std::size_t) { band.wood.push_back(span); });
 
   std::array<std::uint32_t, kBands + 1> band_first{};
   for (std::size_t band = 0; band < kBands; ++band) {
@@ -172,17 +167,23 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
   first_.back() = band_first.back();
   crossings_ = std::make_unique_for_overwrite<Crossing[]>(first_.back());
   if (with_wood) wood_depth_.resize(pixels);
+  const auto firstPixel = [&](const detail::Span& span) {
+    return pixelNumber(static_cast<int>(span.column), static_cast<int>(span.row));
+  };
   tbb::parallel_for(std::size_t{0}, kBands, [&](std::size_t band) {
-    const auto rowsBefore = [&](std::size_t bands) { return std::min(size_.y, static_cast<int>(bands) * band_rows); };
+    const auto rowsBefore = [&](std::size_t bands) {
+      return std::min(size_.y, static_cast<int>(bands) << band_rows_log2);
+    };
     const std::size_t begin = pixelNumber(0, rowsBefore(band)), end = pixelNumber(0, rowsBefore(band + 1));
     Workspace::OfThread& work = workspace.threads.local();
     auto& next = work.next;
     next.assign(end - begin + 1, 0u);
     work.crossings.resize(band_first[band + 1] - band_first[band]);
     for (const auto& of_thread : workspace.threads)
-      for (const Span& span : of_thread.found[band].leaves) {
-        ++next[span.pixel - begin];
-        --next[span.pixel - begin + span.length];
+      for (const detail::Span& span : of_thread.found[band].leaves) {
+        const std::size_t pixel = firstPixel(span) - begin;
+        ++next[pixel];
+        --next[pixel + span.length];
       }
     std::uint32_t sum = 0, met = 0;
     for (std::size_t pixel = 0; pixel < end - begin; ++pixel) {
@@ -191,10 +192,11 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
       sum += met;
     }
     for (const auto& of_thread : workspace.threads)
-      for (const Span& span : of_thread.found[band].leaves)
+      for (const detail::Span& span : of_thread.found[band].leaves) {
+        std::uint32_t* const next_of_pixel = &next[firstPixel(span) - begin];
         for (std::uint32_t i = 0; i < span.length; ++i)
-          work.crossings[next[span.pixel - begin + i]++] =
-              rankOf({span.depth + static_cast<float>(i) * span.slope, span.leaf});
+          work.crossings[next_of_pixel[i]++] = rankOf({span.depth + static_cast<float>(i) * span.slope, span.triangle});
+      }
     std::uint32_t first = 0;
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       const std::uint32_t of_pixel = next[pixel - begin] - first;
@@ -205,11 +207,11 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
     if (!with_wood) return;
     for (std::size_t pixel = begin; pixel < end; ++pixel) wood_depth_[pixel] = std::numeric_limits<float>::infinity();
     for (const auto& of_thread : workspace.threads)
-      for (const Span& span : of_thread.found[band].wood)
-        for (std::uint32_t i = 0; i < span.length; ++i) {
-          float& depth = wood_depth_[span.pixel + i];
-          depth = std::min(depth, span.depth + static_cast<float>(i) * span.slope);
-        }
+      for (const detail::Span& span : of_thread.found[band].wood) {
+        float* const depth = &wood_depth_[firstPixel(span)];
+        for (std::uint32_t i = 0; i < span.length; ++i)
+          depth[i] = std::min(depth[i], span.depth + static_cast<float>(i) * span.slope);
+      }
   });
 }
 
