@@ -12,6 +12,7 @@
 #include <cassert>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <vector>
 
 #include "grid/detail/scan_conversion.hpp"
 
@@ -163,10 +164,10 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
     for (const auto& of_thread : workspace.threads) band_first[band + 1] += of_thread.found[band].crossings;
   }
   const std::size_t pixels = pixelNumber(0, size_.y);
-  first_.resize(pixels + 1);
-  first_.back() = band_first.back();
-  crossings_ = std::make_unique_for_overwrite<Crossing[]>(first_.back());
-  if (with_wood) wood_depth_.resize(pixels);
+  first_ = std::make_unique_for_overwrite<std::uint32_t[]>(pixels + 1);
+  first_[pixels] = band_first.back();
+  crossings_ = std::make_unique_for_overwrite<Crossing[]>(band_first.back());
+  if (with_wood) wood_depth_ = std::make_unique_for_overwrite<float[]>(pixels);
   const auto firstPixel = [&](const detail::Span& span) {
     return pixelNumber(static_cast<int>(span.column), static_cast<int>(span.row));
   };
