@@ -131,7 +131,7 @@ struct Box {
         high(glm::max(glm::max(triangle.corners[0], triangle.corners[1]), triangle.corners[2])) {}
 
   // Whether it lies in one cube of that side, and in no wall of it.
-  bool inOne(double side) const { return glm::floor(low / side) == glm::floor(high / side); }
+  bool inOne(int side) const { return glm::ivec3(low) / side == glm::ivec3(high) / side; }
 };
 
 // All pairs of a block and a triangle with a part in it.
@@ -181,7 +181,8 @@ struct LeafSums {
   static double density(const std::array<double, kSums>& sums, double cell_size) { return sums[0] / cell_size; }
   // (D7) Means of the products over the area.
   static LeafOrientation moments(const std::array<double, kSums>& sums) {
-    const auto mean = [&](std::size_t i) { return static_cast<float>(sums[i] / sums[0]); };
+    const double per_area = 1. / sums[0];
+    const auto mean = [&](std::size_t i) { return static_cast<float>(sums[i] * per_area); };
     return {mean(1), mean(2), mean(3), mean(4), mean(5)};
   }
 };
@@ -216,7 +217,7 @@ BlockOfCells blockOfCells(const TrianglesInCells& triangles, std::span<const Vis
     const double twice_area = glm::length(n);
     if (twice_area == 0.) continue;
     work.shares.clear();
-    if (const Box box(whole); box.inOne(1.))
+    if (const Box box(whole); box.inOne(1))
       work.shares.push_back({glm::ivec3(box.low), 0.5 * twice_area});
     else if (box.inOne(kBlock))
       shareAmongCells(whole, n, work.shares);
@@ -235,6 +236,7 @@ BlockOfCells blockOfCells(const TrianglesInCells& triangles, std::span<const Vis
       for (std::size_t k = 0; k < Sums::kSums; ++k) sums[k] += share.area * factors[k];
     }
   }
+  if constexpr (Sums::kMoments) made.moments.reserve(made.leaf->onVoxelCount());
   for (auto cell = made.leaf->beginValueOn(); cell; ++cell) {
     const auto& sums = work.sums[cell.pos()];
     const auto density = static_cast<float>(Sums::density(sums, triangles.cellSize()));
