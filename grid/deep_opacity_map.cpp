@@ -65,12 +65,15 @@ class LentWorkspace {
   LentWorkspace() {
     if (!idle_.try_pop(lent_)) lent_ = std::make_unique<Workspace>();
   }
-  ~LentWorkspace() { idle_.push(std::move(lent_)); }
+  ~LentWorkspace() {
+    if (idle_.unsafe_size() < kKept) idle_.push(std::move(lent_));
+  }
   LentWorkspace(const LentWorkspace&) = delete;
   LentWorkspace& operator=(const LentWorkspace&) = delete;
   Workspace& operator*() { return *lent_; }
 
  private:
+  static constexpr int kKept = 4;  // more are rarely lent at once
   static inline tbb::concurrent_queue<std::unique_ptr<Workspace>> idle_;
   std::unique_ptr<Workspace> lent_;
 };
