@@ -1,14 +1,18 @@
 #include "grid/deep_opacity_map.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/concurrent_queue.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <vector>
 
 #include "grid/detail/scan_conversion.hpp"
 
@@ -17,7 +21,7 @@ namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t kTask = 4096;  // triangles or vertices that are worth a task
-constexpr std::size_t kBands = 16;   // of rows of pixels, each worth a task
+constexpr std::size_t kBands = 32;   // of rows of pixels, each worth a task
 
 // Box of some triangles, given the positions of their corners.
 Bounds boxOf(const std::vector<glm::uvec3>& triangles, const glm::vec3* positions) {
@@ -34,36 +38,75 @@ Bounds boxOf(const std::vector<glm::uvec3>& triangles, const glm::vec3* position
       });
 }
 
-// Where a triangle meets the line of a pixel.
-struct Fragment {
-  std::uint32_t pixel;
-  Crossing crossing;
-};
-
-// What one task found in a band.
+// What a thread found in a band.
 struct Found {
-  std::vector<Fragment> leaves, wood;
+  std::vector<detail::Span> leaves, wood;  // of triangles, and of no further interest which
+  std::uint32_t crossings = 0;             // of leaves
 };
 
-bool before(const Crossing& a, const Crossing& b) {
-  return (a.depth < b.depth) | ((a.depth == b.depth) & (a.leaf < b.leaf));
+using Rank = std::uint64_t;  // see rankOf
+
+// Memory in which maps are made. It is kept for the next map, since what the system gives anew it clears page by page,
+// which would take as long as the work.
+struct Workspace {
+  struct OfThread {
+    std::array<Found, kBands> found;
+    std::vector<std::uint32_t> next;  // of each pixel of a band, where the next crossing goes
+    std::vector<Rank> crossings;      // of a band
+    std::vector<detail::Span> spans;  // of some triangles
+  };
+  std::vector<glm::vec3> projected;  // of the vertices, (right, up, depth) [m]
+  tbb::enumerable_thread_specific<OfThread> threads;
+};
+
+// A workspace lent to a map.
+class LentWorkspace {
+ public:
+  LentWorkspace() {
+    if (!idle_.try_pop(lent_)) lent_ = std::make_unique<Workspace>();
+  }
+  ~LentWorkspace() {
+    if (idle_.unsafe_size() < kKept) idle_.push(std::move(lent_));
+  }
+  LentWorkspace(const LentWorkspace&) = delete;
+  LentWorkspace& operator=(const LentWorkspace&) = delete;
+  Workspace& operator*() { return *lent_; }
+
+ private:
+  static constexpr int kKept = 4;  // more are rarely lent at once
+  static inline tbb::concurrent_queue<std::unique_ptr<Workspace>> idle_;
+  std::unique_ptr<Workspace> lent_;
+};
+
+// A crossing as a number that is greater the deeper it lies, and of equal ones the one with the greater leaf.
+constexpr std::uint32_t kSign = 1u << 31;
+
+Rank rankOf(const Crossing& crossing) {
+  const auto bits = std::bit_cast<std::uint32_t>(crossing.depth);
+  return Rank{bits & kSign ? ~bits : bits | kSign} << 32 | crossing.leaf;
+}
+Crossing crossingOf(Rank rank) {
+  const auto bits = static_cast<std::uint32_t>(rank >> 32);
+  return {std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits), static_cast<std::uint32_t>(rank)};
 }
 
-// Sorts the crossings of a line by depth. Most lines have a few, in which each finds its place by counting those before
-// it: without branches, as no processor foresees them.
-void sortByDepth(std::span<Crossing> line) {
+// Writes the crossings of a line by depth. Most lines have a few, in which each finds its place by counting those
+// before it: without branches, as no processor foresees them.
+void sortByDepth(std::span<Rank> line, Crossing* sorted) {
   constexpr std::size_t kFew = 16;
-  if (line.size() > kFew) return std::sort(line.begin(), line.end(), before);
-  std::array<std::size_t, kFew> place{};
+  if (line.size() > kFew) {
+    std::sort(line.begin(), line.end());
+    for (const Rank rank : line) *sorted++ = crossingOf(rank);
+    return;
+  }
+  std::array<std::uint32_t, kFew> place{};
   for (std::size_t i = 1; i < line.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const bool swap = before(line[i], line[j]);
+      const bool swap = line[i] < line[j];
       place[i] += !swap;
       place[j] += swap;
     }
-  std::array<Crossing, kFew> unsorted;
-  std::copy(line.begin(), line.end(), unsorted.begin());
-  for (std::size_t i = 0; i < line.size(); ++i) line[place[i]] = unsorted[i];
+  for (std::size_t i = 0; i < line.size(); ++i) sorted[place[i]] = crossingOf(line[i]);
 }
 
 }  // namespace
@@ -71,68 +114,108 @@ void sortByDepth(std::span<Crossing> line) {
 DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, bool with_wood)
     : axes_(axesAlong(along)) {
   assert(resolution >= 1);
-  const auto projected = std::make_unique_for_overwrite<glm::vec3[]>(mesh.vertices.size());
+  LentWorkspace lent;
+  Workspace& workspace = *lent;
+  auto& projected = workspace.projected;
+  projected.resize(mesh.vertices.size());
   tbb::parallel_for(Range(0, mesh.vertices.size(), kTask), [&](const Range& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) projected[i] = inMap(mesh.vertices[i]);
   });
-  Bounds box = boxOf(mesh.leaf_triangles, projected.get());
-  box.include(boxOf(mesh.wood_triangles, projected.get()));
+  Bounds box = boxOf(mesh.leaf_triangles, projected.data());
+  box.include(boxOf(mesh.wood_triangles, projected.data()));
   const glm::vec2 extent = box.size();
   pixel_size_ = std::max({extent.x, extent.y, 1e-6f}) / static_cast<float>(resolution);
   size_ = glm::clamp(glm::ivec2(glm::ceil(extent / pixel_size_)), 1, resolution);
   corner_ = glm::vec2(box.centre()) - 0.5f * pixel_size_ * glm::vec2(size_);
 
-  const double pixels_per_metre = 1. / double{pixel_size_};
-  const auto inPixels = [&](std::uint32_t vertex) {
-    const glm::dvec3 at = projected[vertex];
-    return glm::dvec3((glm::dvec2(at) - glm::dvec2(corner_)) * pixels_per_metre + 0.5, at.z);
+  const detail::PixelGrid pixel_grid{
+      .corner = corner_, .pixels_per_metre = 1. / double{pixel_size_}, .columns = size_.x, .rows = size_.y};
+  int band_rows_log2 = 0;  // each band has a power of two of rows
+  while ((size_.y - 1) >> band_rows_log2 >= int{kBands}) ++band_rows_log2;
+  for (auto& of_thread : workspace.threads)
+    for (Found& band : of_thread.found) {
+      band.leaves.clear();
+      band.wood.clear();
+      band.crossings = 0;
+    }
+  const detail::ScanConversion scan = detail::scanConversion();
+  const std::size_t room = std::max(kTask, static_cast<std::size_t>(size_.y));
+  const auto find = [&](const std::vector<glm::uvec3>& triangles, const auto& put) {
+    tbb::parallel_for(Range(0, triangles.size(), kTask), [&](const Range& range) {
+      Workspace::OfThread& work = workspace.threads.local();
+      work.spans.resize(room);
+      for (std::size_t i = range.begin(); i != range.end();) {
+        const detail::Scanned scanned =
+            scan(pixel_grid, projected.data(), &triangles[i], range.end() - i, work.spans.data(), room);
+        for (const detail::Span& span : std::span(work.spans).first(scanned.spans))
+          put(work.found[span.row >> band_rows_log2], span, i + span.triangle);
+        i += scanned.triangles;
+      }
+    });
   };
-  const int band_rows = (size_.y + int{kBands} - 1) / int{kBands};
-  const std::size_t leaves = mesh.leaf_triangles.size();
-  const std::size_t triangles = leaves + (with_wood ? mesh.wood_triangles.size() : 0);
-  std::vector<std::array<Found, kBands>> found((triangles + kTask - 1) / kTask);  // tasks share nothing
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t task) {
-    const auto find = [&](const glm::uvec3& t, std::vector<Fragment> Found::*kind, std::uint32_t leaf) {
-      detail::scanTriangle({inPixels(t.x), inPixels(t.y), inPixels(t.z)}, size_,
-                           [&](int y, int x_first, int x_end, const auto& depth) {
-                             auto& fragments = found[task][static_cast<std::size_t>(y / band_rows)].*kind;
-                             auto pixel = static_cast<std::uint32_t>(pixelNumber(x_first, y));
-                             for (int x = x_first; x < x_end; ++x)
-                               fragments.push_back({pixel++, {static_cast<float>(depth(x)), leaf}});
-                           });
-    };
-    const std::size_t end = std::min(triangles, (task + 1) * kTask);
-    std::size_t i = task * kTask;
-    for (; i < std::min(leaves, end); ++i) find(mesh.leaf_triangles[i], &Found::leaves, mesh.leaf_of_triangle[i]);
-    for (; i < end; ++i) find(mesh.wood_triangles[i - leaves], &Found::wood, kNoLeaf);
+  find(mesh.leaf_triangles, [&](Found& band, detail::Span span, std::size_t triangle) {
+    span.triangle = mesh.leaf_of_triangle[triangle];
+    band.leaves.push_back(span);
+    band.crossings += span.length;
   });
+  if (with_wood)
+    find(mesh.wood_triangles, [](Found& band, const detail::Span& span, std::size_t) { band.wood.push_back(span); });
 
   std::array<std::uint32_t, kBands + 1> band_first{};
   for (std::size_t band = 0; band < kBands; ++band) {
     band_first[band + 1] = band_first[band];
-    for (const auto& of_task : found) band_first[band + 1] += static_cast<std::uint32_t>(of_task[band].leaves.size());
+    for (const auto& of_thread : workspace.threads) band_first[band + 1] += of_thread.found[band].crossings;
   }
   const std::size_t pixels = pixelNumber(0, size_.y);
-  first_.assign(pixels + 1, 0u);
-  first_.back() = band_first.back();
-  crossings_ = std::make_unique_for_overwrite<Crossing[]>(first_.back());
-  if (with_wood) wood_depth_.assign(pixels, std::numeric_limits<float>::infinity());
+  first_ = std::make_unique_for_overwrite<std::uint32_t[]>(pixels + 1);
+  first_[pixels] = band_first.back();
+  crossings_ = std::make_unique_for_overwrite<Crossing[]>(band_first.back());
+  if (with_wood) wood_depth_ = std::make_unique_for_overwrite<float[]>(pixels);
+  const auto firstPixel = [&](const detail::Span& span) {
+    return pixelNumber(static_cast<int>(span.column), static_cast<int>(span.row));
+  };
   tbb::parallel_for(std::size_t{0}, kBands, [&](std::size_t band) {
-    const auto rowsBefore = [&](std::size_t bands) { return std::min(size_.y, static_cast<int>(bands) * band_rows); };
+    const auto rowsBefore = [&](std::size_t bands) {
+      return std::min(size_.y, static_cast<int>(bands) << band_rows_log2);
+    };
     const std::size_t begin = pixelNumber(0, rowsBefore(band)), end = pixelNumber(0, rowsBefore(band + 1));
-    for (const auto& of_task : found)
-      for (const Fragment& fragment : of_task[band].leaves) ++first_[fragment.pixel];
-    std::uint32_t sum = band_first[band];
-    for (std::size_t pixel = begin; pixel < end; ++pixel) first_[pixel] = sum += first_[pixel];
-    for (const auto& of_task : found)
-      for (const Fragment& fragment : of_task[band].leaves) crossings_[--first_[fragment.pixel]] = fragment.crossing;
-    for (std::size_t pixel = begin; pixel < end; ++pixel) {
-      const std::uint32_t next = pixel + 1 < end ? first_[pixel + 1] : band_first[band + 1];
-      sortByDepth({&crossings_[first_[pixel]], next - first_[pixel]});
+    Workspace::OfThread& work = workspace.threads.local();
+    auto& next = work.next;
+    next.assign(end - begin + 1, 0u);
+    work.crossings.resize(band_first[band + 1] - band_first[band]);
+    for (const auto& of_thread : workspace.threads)
+      for (const detail::Span& span : of_thread.found[band].leaves) {
+        const std::size_t pixel = firstPixel(span) - begin;
+        ++next[pixel];
+        --next[pixel + span.length];
+      }
+    std::uint32_t sum = 0, met = 0;
+    for (std::size_t pixel = 0; pixel < end - begin; ++pixel) {
+      met += next[pixel];
+      next[pixel] = sum;
+      sum += met;
     }
-    for (const auto& of_task : found)
-      for (const Fragment& fragment : of_task[band].wood)
-        wood_depth_[fragment.pixel] = std::min(wood_depth_[fragment.pixel], fragment.crossing.depth);
+    for (const auto& of_thread : workspace.threads)
+      for (const detail::Span& span : of_thread.found[band].leaves) {
+        std::uint32_t* const next_of_pixel = &next[firstPixel(span) - begin];
+        for (std::uint32_t i = 0; i < span.length; ++i)
+          work.crossings[next_of_pixel[i]++] = rankOf({span.depth + static_cast<float>(i) * span.slope, span.triangle});
+      }
+    std::uint32_t first = 0;
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      const std::uint32_t of_pixel = next[pixel - begin] - first;
+      first_[pixel] = band_first[band] + first;
+      if (of_pixel) sortByDepth(std::span(work.crossings).subspan(first, of_pixel), &crossings_[first_[pixel]]);
+      first += of_pixel;
+    }
+    if (!with_wood) return;
+    for (std::size_t pixel = begin; pixel < end; ++pixel) wood_depth_[pixel] = std::numeric_limits<float>::infinity();
+    for (const auto& of_thread : workspace.threads)
+      for (const detail::Span& span : of_thread.found[band].wood) {
+        float* const depth = &wood_depth_[firstPixel(span)];
+        for (std::uint32_t i = 0; i < span.length; ++i)
+          depth[i] = std::min(depth[i], span.depth + static_cast<float>(i) * span.slope);
+      }
   });
 }
 

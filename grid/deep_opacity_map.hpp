@@ -5,7 +5,6 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "core/directions.hpp"
 #include "core/tree_mesh.hpp"
@@ -35,11 +34,11 @@ class DeepOpacityMap {
 
   // All crossings, pixel by pixel, sorted by depth: those of pixel (x, y) are [first[i], first[i + 1]), i = y * width +
   // x.
-  std::span<const std::uint32_t> first() const { return first_; }
-  std::span<const Crossing> crossings() const { return {crossings_.get(), first_.back()}; }
+  std::span<const std::uint32_t> first() const { return {first_.get(), pixelNumber(0, size_.y) + 1}; }
+  std::span<const Crossing> crossings() const { return {crossings_.get(), first().back()}; }
   std::span<const Crossing> crossings(int x, int y) const;
   // Depth of the first wood in each pixel [m]; infinity where there is none; empty in a map made without wood.
-  std::span<const float> woodDepth() const { return wood_depth_; }
+  std::span<const float> woodDepth() const { return {wood_depth_.get(), wood_depth_ ? pixelNumber(0, size_.y) : 0}; }
 
   // (right, up, depth) of a point in the map [m].
   glm::vec3 inMap(glm::vec3 point) const;
@@ -64,9 +63,9 @@ class DeepOpacityMap {
   glm::vec2 corner_{0.f};
   float pixel_size_ = 0.f;
   glm::ivec2 size_{0};
-  std::vector<std::uint32_t> first_;
+  std::unique_ptr<std::uint32_t[]> first_;
   std::unique_ptr<Crossing[]> crossings_;
-  std::vector<float> wood_depth_;
+  std::unique_ptr<float[]> wood_depth_;
 };
 
 }  // namespace sunfleck

@@ -51,8 +51,9 @@ void FoliageStand::requireMemory(std::span<const std::size_t> instances, std::sp
   for (const std::size_t p : standing) {
     const CellGrid& cells = prototypes_[p].cells;
     const double side = static_cast<double>(std::max({cells.size.x, cells.size.y, cells.size.z}));
-    bytes += axes * 12. * static_cast<double>(cells.count());
-    kinds += axes * std::pow(7. * side + 10., 2.) * sizeof(FixedDepth);  // a picture, seen obliquely
+    const double parts = 8. * (cells.size.x + 2.) * (cells.size.y + 2.) * (cells.size.z + 2.);
+    bytes += axes * 12. * parts;                                                         // while they are made
+    kinds += axes * (parts + std::pow(14. * side + 20., 2.)) * 2. * sizeof(FixedDepth);  // a picture is seen obliquely
     around = glm::max(around, periodsAround({.period = period_}, cells.leaves));
   }
   bytes += kinds * static_cast<double>(prototypes_.size());

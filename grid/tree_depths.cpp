@@ -13,7 +13,9 @@ namespace {
 // (RMS, the cherry) with 8 lines to a side, 1.0 % with 16, 0.5 % with 32.
 constexpr int kLinesPerCell = 16;
 constexpr float kFinestPicture = 2.f;  // as seen from cells so many of the map's pixels wide or narrower
-constexpr int kPixelsPerCell = 4;      // of a picture of thickness, to a cell's side
+constexpr int kPixelsPerCell = 8;      // of a picture of thickness, to a cell's side
+constexpr int kParts = 2;              // of a cell's side, that depths within the crown are told apart in
+constexpr int kMargin = 1;             // cells around the tree's in which they are told too
 
 // The part of a line that lies in a box, as distances along it; empty when the first is not the smaller.
 glm::vec2 within(const Bounds& box, const glm::vec3& from, const glm::vec3& along) {
@@ -115,11 +117,13 @@ class Lattice {
 // as a picture. The lines through a cube are spread as the sum of three even spreads, along its edges as the map sees
 // them. Each is taken at three points, so far apart that the variance of all is that of the cube, side^2 / 12: what
 // lattice and picture add by interpolation, pixel^2 / 6 each time, is left out.
-constexpr int kFiner = 2;
+constexpr int kFiner = 1;
+constexpr int kTaps = 3;
 Lattice throughCells(const DeepOpacityMap& map, float side, glm::vec2 corner, glm::ivec2 size) {
   constexpr float pixel = 1.f / (kFiner * kPixelsPerCell);  // of the lattice [side]
   constexpr float added = pixel * pixel * (1.f / 12.f + 3.f / 6.f + kFiner * kFiner / 6.f);
-  const float apart = std::sqrt(1.5f * (1.f / 12.f - added)) * kFiner * kPixelsPerCell;  // [pixel]
+  // Of kTaps points each 1 apart the variance is (kTaps^2 - 1) / 12.
+  const float apart = std::sqrt((1.f - 12.f * added) / (kTaps * kTaps - 1.f)) * kFiner * kPixelsPerCell;  // [pixel]
 
   const SummedArea sums(map);
   const float in_map = side * pixel / map.pixelSize();  // pixel of the lattice in those of the map
@@ -136,7 +140,12 @@ Lattice throughCells(const DeepOpacityMap& map, float side, glm::vec2 corner, gl
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {
         const glm::vec2 at(x, y);
-        spread(x, y) = std::max(0.f, (lattice.at(at - edge) + lattice.at(at) + lattice.at(at + edge)) / 3.f);
+        float sum = lattice.at(at);
+        for (int tap = 1; tap <= kTaps / 2; ++tap) {
+          const glm::vec2 away = static_cast<float>(tap) * edge;
+          sum += lattice.at(at - away) + lattice.at(at + away);
+        }
+        spread(x, y) = std::max(0.f, sum / kTaps);
       }
     lattice = std::move(spread);
   }
@@ -147,10 +156,12 @@ Lattice throughCells(const DeepOpacityMap& map, float side, glm::vec2 corner, gl
 
 TreeDepths::TreeDepths(const CellGrid& grid, const DeepOpacityMap& map, std::span<const float> seen_from)
     : axes_(map.axes()) {
-  walkLines(grid, map);
+  const std::vector<Means> means = walkLines(grid, map);
   for (const float seen_side : seen_from) {
     Picture& picture = pictures_.emplace_back();
+    within_.emplace_back();
     if (seen_side == 0.f) continue;
+    within_.back() = overCells(means, seen_side);
     const float side = std::max(seen_side, kFinestPicture * map.pixelSize());
     const float pixel = side / kPixelsPerCell;  // [m]
     const glm::vec2 covered = map.pixelSize() * glm::vec2(map.size());
@@ -176,16 +187,20 @@ TreeDepths::TreeDepths(const CellGrid& grid, const DeepOpacityMap& map, std::spa
   cells_high_ = glm::vec2(box.high);
 }
 
-void TreeDepths::walkLines(const CellGrid& grid, const DeepOpacityMap& map) {
+// Means over parts of cells.
+std::vector<TreeDepths::Means> TreeDepths::walkLines(const CellGrid& grid, const DeepOpacityMap& map) {
   struct Sums {
     float length = 0.f, beyond = 0.f, before = 0.f;  // [m], and crossings times [m]
   };
-  std::vector<Sums> sums(grid.count());
+  parts_.cell_size = grid.cell_size / kParts;
+  parts_.low = grid.low - static_cast<float>(kMargin) * grid.cell_size;
+  parts_.size = kParts * (grid.size + 2 * kMargin);
+  std::vector<Sums> sums(parts_.number({0, 0, parts_.size.z}));
   const int every = std::max(1, static_cast<int>(grid.cell_size / (kLinesPerCell * map.pixelSize())));
   // The cells may reach beyond the map, whose pixels cover the tree: the lines there meet no leaf.
   Bounds shadow;
   for (int corner = 0; corner < 8; ++corner) {
-    const Bounds box = grid.box();
+    const Bounds box = parts_.box();
     shadow.include(map.inMap({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
                               corner & 4 ? box.high.z : box.low.z}));
   }
@@ -199,29 +214,87 @@ void TreeDepths::walkLines(const CellGrid& grid, const DeepOpacityMap& map) {
       const std::span<const Crossing> line = in_map ? map.crossings(x, y) : std::span<const Crossing>{};
       const auto all = static_cast<float>(line.size());
       std::size_t met = 0;
-      walk(grid, map.inSpace(x, y, 0.f), axes_.along, [&](std::size_t cell, float begin, float end) {
-        Sums& of_cell = sums[cell];
+      walk(parts_, map.inSpace(x, y, 0.f), axes_.along, [&](std::size_t part, float begin, float end) {
+        Sums& of_part = sums[part];
         while (met < line.size() && line[met].depth < begin) ++met;
         float before = static_cast<float>(met) * (end - begin);
         for (; met < line.size() && line[met].depth < end; ++met) before += end - line[met].depth;
-        of_cell.length += end - begin;
-        of_cell.before += before;
-        of_cell.beyond += all * (end - begin) - before;
+        of_part.length += end - begin;
+        of_part.before += before;
+        of_part.beyond += all * (end - begin) - before;
       });
     }
-  beyond_.resize(grid.count());
-  before_.resize(grid.count());
+  const auto mean = [&](const Sums& of, const glm::vec3& centre) {
+    if (of.length > 0.f) return Means{std::max(of.beyond, 0.f) / of.length, of.before / of.length};
+    // The map's lines are too coarse for it: the nearest to its centre.
+    const DeepOpacityMap::Counts counts = map.counts(centre);
+    return Means{static_cast<float>(counts.beyond), static_cast<float>(counts.before)};
+  };
   for (std::size_t cell = 0; cell < grid.count(); ++cell) {
-    if (sums[cell].length == 0.f) {  // the map's lines are too coarse for it: the nearest to its centre
-      const DeepOpacityMap::Counts counts = map.counts(grid.centre(cell));
-      beyond_[cell] = fixedDepth(depthSteps(static_cast<float>(counts.beyond)));
-      before_[cell] = fixedDepth(depthSteps(static_cast<float>(counts.before)));
-      continue;
+    Sums of_cell;
+    for (int i = 0; i < kParts * kParts * kParts; ++i) {
+      const glm::ivec3 part(i % kParts, i / kParts % kParts, i / (kParts * kParts));
+      const Sums& of_part = sums[parts_.number(kParts * (grid.cell(cell) + kMargin) + part)];
+      of_cell.length += of_part.length;
+      of_cell.beyond += of_part.beyond;
+      of_cell.before += of_part.before;
     }
-    const float length = std::max(sums[cell].length, 1e-30f);
-    beyond_[cell] = fixedDepth(depthSteps(std::max(sums[cell].beyond, 0.f) / length));
-    before_[cell] = fixedDepth(depthSteps(sums[cell].before / length));
+    const Means of = mean(of_cell, grid.centre(cell));
+    beyond_.push_back(fixedDepth(depthSteps(of.beyond)));
+    before_.push_back(fixedDepth(depthSteps(of.before)));
   }
+  std::vector<Means> means;
+  means.reserve(sums.size());
+  for (std::size_t part = 0; part < sums.size(); ++part) means.push_back(mean(sums[part], parts_.centre(part)));
+  return means;
+}
+
+// Means over cells of side `seen_side` around the centres of parts, from the means over parts: along each axis, of the
+// parts as far away as `whole` with weight 1 and of the next ones with weight `rim`, so that the variance of all is
+// that of the cell, less 1/6 that interpolation between parts adds.
+std::vector<TreeDepths::Depths> TreeDepths::overCells(std::vector<Means> means, float seen_side) const {
+  const float side = seen_side / parts_.cell_size;
+  const float wanted = side * side / 12.f - 1.f / 6.f - 1.f / 12.f;  // besides a part's own [squared side of a part]
+  int whole = 0;
+  float sum = 0.f;  // of squared distances of whole parts
+  const auto next = [&] { return static_cast<float>((whole + 1) * (whole + 1)); };
+  const auto parts = [&] { return static_cast<float>(2 * whole + 1); };
+  const int farthest = std::max({parts_.size.x, parts_.size.y, parts_.size.z});  // there all weigh alike already
+  while (whole < farthest && sum + 2.f * next() <= wanted * (parts() + 2.f)) {
+    sum += 2.f * next();
+    ++whole;
+  }
+  const float rim = whole == farthest ? 0.f : std::max(0.f, (wanted * parts() - sum) / (2.f * (next() - wanted)));
+  const float weight = 1.f / (parts() + 2.f * rim);
+  const std::array<std::size_t, 3> strides{1, parts_.number({0, 1, 0}), parts_.number({0, 0, 1})};
+  std::vector<Means> line;
+  for (int axis = 0; axis < 3 && (whole > 0 || rim > 0.f); ++axis) {
+    const std::size_t stride = strides[static_cast<std::size_t>(axis)];
+    const int count = parts_.size[axis], across = parts_.size[(axis + 1) % 3], up = parts_.size[(axis + 2) % 3];
+    line.resize(static_cast<std::size_t>(count));
+    for (int row = 0; row < across * up; ++row) {
+      glm::ivec3 first(0);
+      first[(axis + 1) % 3] = row % across;
+      first[(axis + 2) % 3] = row / across;
+      Means* const of_row = &means[parts_.number(first)];
+      for (int i = 0; i < count; ++i) line[static_cast<std::size_t>(i)] = of_row[static_cast<std::size_t>(i) * stride];
+      const auto at = [&](int i) { return line[static_cast<std::size_t>(std::clamp(i, 0, count - 1))]; };
+      for (int i = 0; i < count; ++i) {
+        Means total{rim * (at(i - whole - 1).beyond + at(i + whole + 1).beyond),
+                    rim * (at(i - whole - 1).before + at(i + whole + 1).before)};
+        for (int k = -whole; k <= whole; ++k) {
+          total.beyond += at(i + k).beyond;
+          total.before += at(i + k).before;
+        }
+        of_row[static_cast<std::size_t>(i) * stride] = {weight * total.beyond, weight * total.before};
+      }
+    }
+  }
+  std::vector<Depths> depths;
+  depths.reserve(means.size());
+  for (const Means& of : means)
+    depths.push_back({fixedDepth(depthSteps(of.beyond)), fixedDepth(depthSteps(of.before))});
+  return depths;
 }
 
 std::uint32_t TreeDepths::Picture::at(glm::vec2 place) const {
@@ -237,22 +310,22 @@ std::uint32_t TreeDepths::Picture::at(glm::vec2 place) const {
   return static_cast<std::uint32_t>(low * (1.f - above) + high * above + 0.5f);
 }
 
-TreeDepths::Depths TreeDepths::within(const CellGrid& grid, glm::vec3 point) const {
-  const glm::vec3 at = glm::clamp((point - grid.low) / grid.cell_size - 0.5f, glm::vec3(0.f), glm::vec3(grid.size - 1));
-  const glm::ivec3 low = glm::min(glm::ivec3(at), grid.size - 1);
-  const glm::ivec3 high = glm::min(low + 1, grid.size - 1);
-  const glm::vec3 part = at - glm::vec3(low);
+TreeDepths::Depths TreeDepths::within(std::size_t receiver_cells, glm::vec3 point) const {
+  const std::vector<Depths>& depths = within_[receiver_cells];
+  const glm::vec3 at =
+      glm::clamp((point - parts_.low) / parts_.cell_size - 0.5f, glm::vec3(0.f), glm::vec3(parts_.size - 1));
+  const glm::ivec3 low = glm::min(glm::ivec3(at), parts_.size - 2);
+  const glm::vec3 share = at - glm::vec3(low);
+  const std::size_t first = parts_.number(low), up = parts_.number({0, 1, 0}), above = parts_.number({0, 0, 1});
   float beyond = 0.f, before = 0.f;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::bvec3 upper(corner & 1, corner & 2, corner & 4);
-    const float weight =
-        (upper.x ? part.x : 1.f - part.x) * (upper.y ? part.y : 1.f - part.y) * (upper.z ? part.z : 1.f - part.z);
-    const std::size_t cell =
-        grid.number({upper.x ? high.x : low.x, upper.y ? high.y : low.y, upper.z ? high.z : low.z});
-    beyond += weight * static_cast<float>(beyond_[cell]);
-    before += weight * static_cast<float>(before_[cell]);
-  }
-  return {static_cast<std::uint32_t>(beyond + 0.5f), static_cast<std::uint32_t>(before + 0.5f)};
+  for (const std::size_t z : {0u, 1u})
+    for (const std::size_t y : {0u, 1u}) {
+      const Depths* const row = &depths[first + y * up + z * above];
+      const float weight = (y ? share.y : 1.f - share.y) * (z ? share.z : 1.f - share.z);
+      beyond += weight * glm::mix(static_cast<float>(row[0].beyond), static_cast<float>(row[1].beyond), share.x);
+      before += weight * glm::mix(static_cast<float>(row[0].before), static_cast<float>(row[1].before), share.x);
+    }
+  return {static_cast<FixedDepth>(beyond + 0.5f), static_cast<FixedDepth>(before + 0.5f)};
 }
 
 // A point outside the tree's box sees it whole, on that side to which the box lies: across any face that parts the two.
@@ -267,28 +340,32 @@ void TreeDepths::addTo(const CellGrid& grid, const TreeDepths& receiver, const C
   if (receiver.cells_low_.x > high.x || receiver.cells_low_.y > high.y || receiver.cells_high_.x < low.x ||
       receiver.cells_high_.y < low.y)
     return;
-  // Side of a parting face: 1 where the tree lies along the axis from the points, -1 against it, 0 without such a face.
-  const auto side = [&](const glm::vec3& least, const glm::vec3& greatest) {
+  // Side of a face that parts the box of a cell, or of all, from the tree: 1 where the tree lies along the axis from
+  // it, -1 against it, 0 without such a face.
+  const auto side = [&](const Bounds& box, bool one_cell) {
     bool beside = false;
     for (int axis = 0; axis < 3; ++axis) {
-      const bool above = greatest[axis] <= grid.leaves.low[axis] + displacement[axis];
-      const bool below = least[axis] >= grid.leaves.high[axis] + displacement[axis];
+      const bool above = box.high[axis] <= grid.leaves.low[axis] + displacement[axis];
+      const bool below = box.low[axis] >= grid.leaves.high[axis] + displacement[axis];
       if (!above && !below) continue;
       if (std::abs(axes_.along[axis]) > 1e-6f) return above == (axes_.along[axis] > 0.f) ? 1 : -1;
       beside = true;
     }
-    if (!beside || least != greatest) return 0;
-    return glm::dot(grid.leaves.centre() + displacement - least, axes_.along) > 0.f ? 1 : -1;
+    if (!beside || !one_cell) return 0;
+    return glm::dot(grid.leaves.centre() + displacement - box.centre(), axes_.along) > 0.f ? 1 : -1;
   };
-  const glm::vec3 half_cell(0.5f * receiver_grid.cell_size);
-  const int common_side = side(receiver_grid.box().low + half_cell, receiver_grid.box().high - half_cell);
+  // A cell is whole where depths within the crown reach as far.
+  const glm::vec3 half_cell(std::min(0.5f * receiver_grid.cell_size, kMargin * grid.cell_size));
+  const glm::vec3 beyond_centre = half_cell - 0.5f * receiver_grid.cell_size;
+  const int common_side =
+      side({receiver_grid.box().low - beyond_centre, receiver_grid.box().high + beyond_centre}, false);
   for (std::size_t i = 0; i < receiver.cells_.size(); ++i) {
     int cell_side = common_side;
     if (cell_side == 0) {
       const glm::vec3 centre = receiver_grid.centre(receiver_grid.active[i]);
-      cell_side = side(centre, centre);
+      cell_side = side({centre - half_cell, centre + half_cell}, true);
       if (cell_side == 0) {
-        const Depths depths = within(grid, centre - displacement);
+        const Depths depths = within(receiver_cells, centre - displacement);
         beyond[i] += times * static_cast<std::int32_t>(depths.beyond);
         before[i] += times * static_cast<std::int32_t>(depths.before);
         continue;
@@ -302,6 +379,7 @@ void TreeDepths::addTo(const CellGrid& grid, const TreeDepths& receiver, const C
 std::size_t TreeDepths::memoryBytes() const {
   std::size_t bytes = (beyond_.size() + before_.size()) * sizeof(FixedDepth) + cells_.size() * sizeof(glm::vec2);
   for (const Picture& picture : pictures_) bytes += picture.thickness.size() * sizeof(FixedDepth);
+  for (const std::vector<Depths>& depths : within_) bytes += depths.size() * sizeof(Depths);
   return bytes;
 }
 

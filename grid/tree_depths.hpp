@@ -23,12 +23,6 @@ class TreeDepths {
   // the cell's volume, sampled by the map's lines through it, exact along each. In steps; for all cells, active or not.
   std::span<const FixedDepth> beyond() const { return beyond_; }
   std::span<const FixedDepth> before() const { return before_; }
-  struct Depths {
-    std::uint32_t beyond, before;  // [step]
-  };
-  // The same at a point among the tree's cells, interpolated between their centres.
-  Depths within(const CellGrid& grid, glm::vec3 point) const;
-
   // Adds what this tree, displaced by `displacement` [m] from the tree of `receiver`, puts before the receiver's active
   // cells, `times` times: -1 takes it away again. `receiver` must have the same axes.
   //   grid, receiver_grid  of this tree and of the receiver
@@ -53,11 +47,22 @@ class TreeDepths {
     // In steps, at (right, up) [m].
     std::uint32_t at(glm::vec2 place) const;
   };
-  void walkLines(const CellGrid& grid, const DeepOpacityMap& map);
+  struct Means {
+    float beyond, before;  // crossings [1]
+  };
+  struct Depths {
+    FixedDepth beyond, before;
+  };
+  std::vector<Means> walkLines(const CellGrid& grid, const DeepOpacityMap& map);
+  std::vector<Depths> overCells(std::vector<Means> means, float seen_side) const;
+  // Means over a cell around a point among the tree's cells or near them, interpolated.
+  Depths within(std::size_t receiver_cells, glm::vec3 point) const;
 
   Axes axes_;
   std::vector<FixedDepth> beyond_, before_;
   std::vector<Picture> pictures_;               // as seen from each kind of cells
+  CellGrid parts_;                              // parts of the cells, and as many around them; all are told of
+  std::vector<std::vector<Depths>> within_;     // at the centres of these parts, for each kind of cells
   std::vector<glm::vec2> cells_;                // (right, up) of the centres of the tree's active cells [m]
   glm::vec2 cells_low_{0.f}, cells_high_{0.f};  // their box
 };

@@ -27,12 +27,18 @@ glm::dvec3 crossing(const glm::dvec3& from, const glm::dvec3& to, int axis, doub
   return corner;
 }
 
+// Without a call, which std::floor would be.
+int wholePart(double x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (static_cast<double>(truncated) > x);
+}
+
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
   // Cells from first() to last() are crossed; a polygon in the plane between two cells is in the upper one.
-  int first() const { return static_cast<int>(std::floor(low)); }
-  int last() const { return std::max(first(), static_cast<int>(std::ceil(high)) - 1); }
+  int first() const { return wholePart(low); }
+  int last() const { return std::max(first(), -wholePart(-high) - 1); }
 };
 
 Extent extent(const ConvexPolygon& polygon, int axis) {

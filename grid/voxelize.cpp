@@ -51,6 +51,11 @@ class TrianglesInCells {
     const glm::uvec3& t = triangles_[i];
     return sunfleck::triangle(inCells(t.x), inCells(t.y), inCells(t.z));
   }
+  // Ask for what triangle() reads of a triangle to be fetched into the cache, first its corners' numbers, then these.
+  void fetchNumbers(std::uint32_t i) const { __builtin_prefetch(&triangles_[i]); }
+  void fetchCorners(std::uint32_t i) const {
+    for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&mesh_.vertices[triangles_[i][corner]]);
+  }
   glm::ivec3 firstBlock() const { return first_block_; }
   std::size_t count() const { return triangles_.size(); }
   double cellSize() const { return cell_size_; }
@@ -132,7 +137,7 @@ struct Box {
         high(glm::max(glm::max(triangle.corners[0], triangle.corners[1]), triangle.corners[2])) {}
 
   // Whether it lies in one cube of that side, and in no wall of it.
-  bool inOne(double side) const { return glm::floor(low / side) == glm::floor(high / side); }
+  bool inOne(int side) const { return glm::ivec3(low) / side == glm::ivec3(high) / side; }
 };
 
 // All pairs of a block and a triangle with a part in it.
@@ -182,7 +187,8 @@ struct LeafSums {
   static double density(const std::array<double, kSums>& sums, double cell_size) { return sums[0] / cell_size; }
   // (D7) Means of the products over the area.
   static LeafOrientation moments(const std::array<double, kSums>& sums) {
-    const auto mean = [&](std::size_t i) { return static_cast<float>(sums[i] / sums[0]); };
+    const double per_area = 1. / sums[0];
+    const auto mean = [&](std::size_t i) { return static_cast<float>(sums[i] * per_area); };
     return {mean(1), mean(2), mean(3), mean(4), mean(5)};
   }
 };
@@ -204,20 +210,25 @@ struct Workspace {
   std::array<std::array<double, Sums::kSums>, Leaf::SIZE> sums;  // of the cells in use [squared side of a cell]
 };
 
-// The block of cells of these visits: of the parts of its triangles, summed in their order.
+// The block of cells of the first `count` of these visits: of the parts of its triangles, summed in their order. Its
+// triangles lie anywhere in memory; those of later visits are fetched meanwhile.
 template <typename Sums>
-BlockOfCells blockOfCells(const TrianglesInCells& triangles, std::span<const Visit> visits, Workspace<Sums>& work) {
+BlockOfCells blockOfCells(const TrianglesInCells& triangles, std::span<const Visit> visits, std::size_t count,
+                          Workspace<Sums>& work) {
+  constexpr std::size_t kAhead = 8;  // visits
   const glm::ivec3 block = blockOf(visits[0].block);
   const glm::ivec3 first = block * kBlock;
   const glm::ivec3 origin = (triangles.firstBlock() + block) * kBlock;
   BlockOfCells made{std::make_unique<Leaf>(openvdb::Coord(origin.x, origin.y, origin.z), 0.f), {}, {}};
-  for (const Visit& visit : visits) {
-    const ConvexPolygon whole = triangles.triangle(visit.visitor);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i + 2 * kAhead < visits.size()) triangles.fetchNumbers(visits[i + 2 * kAhead].visitor);
+    if (i + kAhead < visits.size()) triangles.fetchCorners(visits[i + kAhead].visitor);
+    const ConvexPolygon whole = triangles.triangle(visits[i].visitor);
     const glm::dvec3 n = normal(whole);
     const double twice_area = glm::length(n);
     if (twice_area == 0.) continue;
     work.shares.clear();
-    if (const Box box(whole); box.inOne(1.))
+    if (const Box box(whole); box.inOne(1))
       work.shares.push_back({glm::ivec3(box.low), 0.5 * twice_area});
     else if (box.inOne(kBlock))
       shareAmongCells(whole, n, work.shares);
@@ -227,15 +238,16 @@ BlockOfCells blockOfCells(const TrianglesInCells& triangles, std::span<const Vis
     for (const CellShare& share : work.shares) {
       // Rounding may leave a corner one digit outside the block.
       const glm::ivec3 cell = glm::clamp(share.cell - first, 0, kBlock - 1);
-      const auto i = static_cast<openvdb::Index>((cell.x * kBlock + cell.y) * kBlock + cell.z);
-      auto& sums = work.sums[i];
-      if (!made.leaf->isValueOn(i)) {
-        made.leaf->setActiveState(i, true);
+      const auto in_block = static_cast<openvdb::Index>((cell.x * kBlock + cell.y) * kBlock + cell.z);
+      auto& sums = work.sums[in_block];
+      if (!made.leaf->isValueOn(in_block)) {
+        made.leaf->setActiveState(in_block, true);
         sums = {};
       }
       for (std::size_t k = 0; k < Sums::kSums; ++k) sums[k] += share.area * factors[k];
     }
   }
+  if constexpr (Sums::kMoments) made.moments.reserve(made.leaf->onVoxelCount());
   for (auto cell = made.leaf->beginValueOn(); cell; ++cell) {
     const auto& sums = work.sums[cell.pos()];
     const auto density = static_cast<float>(Sums::density(sums, triangles.cellSize()));
@@ -260,7 +272,7 @@ std::vector<BlockOfCells> blocksOf(const TreeMesh& mesh, const std::vector<glm::
   std::vector<BlockOfCells> made(sorted.blocks());
   tbb::enumerable_thread_specific<Workspace<Sums>> workspaces;
   stage.inBatches(made.size(), 0.5, 1., [&](std::size_t i) {
-    made[i] = blockOfCells<Sums>(triangles, sorted.ofBlock(i), workspaces.local());
+    made[i] = blockOfCells<Sums>(triangles, sorted.fromBlock(i), sorted.ofBlock(i).size(), workspaces.local());
   });
   stage.report(1.);
   return made;

@@ -52,6 +52,7 @@ class SortedVisits {
   std::span<const Visit> ofBlock(std::size_t i) const {
     return std::span(all_).subspan(first_[i], first_[i + 1] - first_[i]);
   }
+  std::span<const Visit> fromBlock(std::size_t i) const { return std::span(all_).subspan(first_[i]); }  // to the last
 
  private:
   std::vector<Visit> all_;
