@@ -1,0 +1,62 @@
+#include "render/reference/trace_run.hpp"
+
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <mutex>
+
+namespace sunfleck {
+namespace {
+
+// Hands out the numbers of the ranges, one after the other.
+class UnitQueue {
+ public:
+  explicit UnitQueue(std::vector<UnitRanges::Range> ranges) : ranges_(std::move(ranges)) {}
+
+  bool take(std::uint64_t& unit) {
+    const std::scoped_lock lock(mutex_);
+    while (at_ < ranges_.size() && ranges_[at_].first == ranges_[at_].second) ++at_;
+    if (at_ == ranges_.size()) return false;
+    unit = ranges_[at_].first++;
+    return true;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<UnitRanges::Range> ranges_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+void runUnits(const TraceJob& job, const TraceUnits& units, TraceSums& sums, const UnitDone& unit_done) {
+  const std::vector<UnitRanges::Range> missing = sums.done(units.seed).missing(units.first, units.last);
+  std::uint64_t count = 0;
+  for (const auto& [first, last] : missing) count += last - first;
+  UnitQueue queue(missing);
+  Stopped stopped = false;
+  std::mutex adding;
+  const auto work = [&] {
+    UnitTally tally(job.bins());
+    for (std::uint64_t unit; !stopped.load(std::memory_order_relaxed) && queue.take(unit); tally.clear()) {
+      job.trace(units.seed, unit, tally, stopped);
+      const std::scoped_lock lock(adding);
+      if (stopped) return;
+      sums.add(units.seed, unit, tally);
+      if (unit_done && !unit_done(sums)) stopped = true;
+    }
+  };
+  const int cores = tbb::info::default_concurrency();
+  const int threads = units.threads > 0 ? std::min(units.threads, cores) : cores;
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::task_group group;
+    for (std::uint64_t i = 1; i < std::min<std::uint64_t>(static_cast<std::uint64_t>(threads), count); ++i)
+      group.run(work);
+    group.run_and_wait(work);
+  });
+}
+
+}  // namespace sunfleck
