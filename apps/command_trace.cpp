@@ -10,6 +10,7 @@
 #include "apps/terminal.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
+#include "render/compare/validation.hpp"
 #include "render/image_file.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
@@ -43,12 +44,20 @@ std::vector<Row> rowsOf(const ForwardResult& r) {
           {"absorbed_ground", "absorbed by the ground", r.absorbed_ground}};
 }
 
-void writeLeaves(const std::string& file, const TreeMesh& mesh, const ForwardResult& result) {
-  const std::vector<double> areas = leafAreas(mesh);
-  std::string text = "leaf,area_m2,irradiance,standard_error\n";
-  for (std::size_t leaf = 0; leaf < areas.size(); ++leaf)
-    text += fmt::format("{},{:.9g},{:.9g},{:.4g}\n", leaf, areas[leaf], result.leaf_irradiance[leaf],
-                        result.leaf_standard_error[leaf]);
+// Leaves of several kinds are told apart by the kind's name in a first column.
+void writeLeaves(const std::string& file, const Scene& scene, const ForwardResult& result) {
+  const bool several = scene.kinds.size() > 1;
+  std::string text = several ? "kind," : "";
+  text += "leaf,area_m2,irradiance,standard_error\n";
+  std::size_t i = 0;
+  for (const TreeKind& kind : scene.kinds) {
+    const std::vector<double> areas = leafAreas(*kind.mesh);
+    for (std::size_t leaf = 0; leaf < areas.size(); ++leaf, ++i) {
+      if (several) text += kind.name + ",";
+      text += fmt::format("{},{:.9g},{:.9g},{:.4g}\n", leaf, areas[leaf], result.leaf_irradiance[i],
+                          result.leaf_standard_error[i]);
+    }
+  }
   writeWhole(file, text);
 }
 
@@ -64,19 +73,14 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   apply(options.camera, scene);
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
 
-  const RayScene rays(*scene.tree, scene.stand, !options.without_wood);
-  const auto band = static_cast<std::size_t>(options.band);
-  const TraceLight light{.sun = scene.sun(),
-                         .leaf = scene.leaf[band],
-                         .wood_reflectance = scene.wood_reflectance[options.band],
-                         .ground_albedo = scene.ground_albedo[options.band]};
+  const RayScene rays(meshes(scene), scene.stand, !options.without_wood);
+  const TraceLight light = traceLight(scene, options.band);
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   if (!options.only_picture) {
     const TraceEffort effort{
         .paths = static_cast<std::uint64_t>(options.paths), .seed = run.seed, .threads = run.threads};
-    const ForwardResult result =
-        traceForward(rays, *scene.tree, light, effort, terminalProgress("tracing light", run.quiet));
-    if (!options.leaves.empty()) writeLeaves(options.leaves, *scene.tree, result);
+    const ForwardResult result = traceForward(rays, light, effort, terminalProgress("tracing light", run.quiet));
+    if (!options.leaves.empty()) writeLeaves(options.leaves, scene, result);
     for (const Row& row : rowsOf(result)) {
       json[row.name] = row.estimate.value;
       json["standard_errors"][row.name] = known(row.estimate.standard_error);

@@ -49,7 +49,7 @@ std::vector<Scene> scenesOf(const ValidateOptions& options, const Scene& given) 
   if (stand == "given") return {given};
   Scene single = given, periodic = given;
   single.stand = Stand{};
-  periodic.stand = {.period = given.stand.period.value_or(touchingPeriod(*given.tree))};
+  periodic.stand = {.period = given.stand.period.value_or(touchingPeriod(*given.kinds[0].mesh))};
   if (stand == "single") return {single};
   if (stand == "periodic") return {periodic};
   return {single, periodic};
@@ -62,10 +62,10 @@ std::string percent(const std::optional<double>& fraction, const char* sign = ""
 // Ours and the paper's Table 3. Its tree is a cherry too, but not this one.
 std::string table(std::span<const Validation> validations) {
   const Validation& first = validations.front();
-  std::string text =
-      fmt::format("{}: {} leaves ({} triangles), {:.4g} m2, albedo {:.3g}, sun {:.3g} degrees from the zenith\n",
-                  first.scene.name, first.scene.tree->leaf_count, first.scene.tree->leaf_triangles.size(),
-                  first.leaf_area, first.optics().albedo(), first.scene.sun_zenith * 57.29578f);
+  std::string text = fmt::format(
+      "{}: {} leaves ({} triangles), {:.4g} m2, albedo {:.3g}, sun {:.3g} degrees from the zenith\n", first.scene.name,
+      first.scene.kinds[0].mesh->leaf_count, first.scene.kinds[0].mesh->leaf_triangles.size(), first.leaf_area,
+      first.optics().albedo(), first.scene.sun_zenith * 57.29578f);
   for (const Validation& v : validations) {
     text += fmt::format("\n{:<12} RMS error against Monte Carlo, mean depth {:.2f} in {:.2f}\n", kindOf(v.scene),
                         v.mean_depth, v.mean_thickness);
@@ -111,15 +111,11 @@ std::vector<ReportPicture> makePictures(const ValidateOptions& options, const Ru
   keep("spp", "SPP: every leaf in an infinite slab", modelPicture(scene, stand, Model::spp));
   keep("sppg", "SPPG: the slab compensated for the crown's edge", modelPicture(scene, stand, Model::sppg));
   const PixelRays pixels = pixelRays(scene);
-  const TraceLight light{.sun = scene.sun(),
-                         .leaf = scene.leaf[static_cast<std::size_t>(options.effort.band)],
-                         .wood_reflectance = scene.wood_reflectance[options.effort.band],
-                         .ground_albedo = scene.ground_albedo[options.effort.band]};
   const auto paths = static_cast<std::uint64_t>(options.samples) * static_cast<std::uint64_t>(pixels.width) *
                      static_cast<std::uint64_t>(pixels.height);
-  const CameraResult traced = traceCamera(RayScene(*scene.tree, scene.stand, true), light, pixels, bounds(scene).low.z,
-                                          {.paths = paths, .seed = run.seed, .threads = run.threads},
-                                          terminalProgress("tracing the picture", run.quiet));
+  const CameraResult traced = traceCamera(
+      RayScene(meshes(scene), scene.stand, true), traceLight(scene, options.effort.band), pixels, bounds(scene).low.z,
+      {.paths = paths, .seed = run.seed, .threads = run.threads}, terminalProgress("tracing the picture", run.quiet));
   keep("monte_carlo", "Monte Carlo: the reference", traced.radiance);
   return pictures;
 }

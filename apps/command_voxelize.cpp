@@ -45,7 +45,7 @@ double projectionAlongZ(const TreeMesh& mesh) {
 }
 
 std::string standName(const Scene& scene) {
-  const std::string trees = fmt::format("{} x {}", scene.stand.trees.size(), scene.source);
+  const std::string trees = fmt::format("{} x {}", scene.stand.trees.size(), scene.kinds[0].source);
   if (!scene.stand.period) return trees;
   return fmt::format("{}, one period of {:.6g} m x {:.6g} m", trees, scene.stand.period->x, scene.stand.period->y);
 }
@@ -61,21 +61,22 @@ int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
       return DensityGrid::read(options.scene.scene);
     }
     const Scene scene = readScene(options.scene);
-    source.name = scene.source;
-    source.hash = meshHash(*scene.tree);
-    mesh_area = leafArea(*scene.tree);
+    source.name = scene.kinds[0].source;
+    source.hash = meshHash(*scene.kinds[0].mesh);
+    mesh_area = leafArea(*scene.kinds[0].mesh);
     if (options.stand) {
       source.name = standName(scene);
-      source.hash = standHash(*scene.tree, scene.stand);
+      source.hash = standHash(*scene.kinds[0].mesh, scene.stand);
       mesh_area *= static_cast<double>(scene.stand.trees.size());
     }
-    mesh_projection = projectionAlongZ(*scene.tree);
-    const glm::vec3 size = leafBounds(*scene.tree).size();
+    mesh_projection = projectionAlongZ(*scene.kinds[0].mesh);
+    const glm::vec3 size = leafBounds(*scene.kinds[0].mesh).size();
     const float cell_size = options.cell_size.value_or(std::max({size.x, size.y, size.z}) / kCellsAlongTree);
     const auto start = std::chrono::steady_clock::now();
     const Progress progress = terminalProgress("voxelizing", run.quiet);
-    DensityGrid made = options.stand ? DensityGrid::voxelizeStand(*scene.tree, scene.stand, cell_size, progress)
-                                     : DensityGrid::voxelize(*scene.tree, cell_size, progress);
+    DensityGrid made = options.stand
+                           ? DensityGrid::voxelizeStand(*scene.kinds[0].mesh, scene.stand, cell_size, progress)
+                           : DensityGrid::voxelize(*scene.kinds[0].mesh, cell_size, progress);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return made;
   }();

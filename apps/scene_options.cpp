@@ -49,10 +49,11 @@ Scene readScene(const SceneOptions& options) {
   rules.scale = options.scale;
   rules.up = options.up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
   Scene scene = sunfleck::readScene(options.scene, rules);
-  if (scene.dropped.leaf_triangles > 0)
+  if (scene.kinds[0].dropped.leaf_triangles > 0)
     fmt::print(stderr, "sunfleck: {}: left out {} leaf triangles of no area\n", options.scene,
-               scene.dropped.leaf_triangles);
-  if (options.albedo) scene.leaf.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
+               scene.kinds[0].dropped.leaf_triangles);
+  if (options.albedo)
+    scene.kinds[0].leaf.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
   if (options.sun_zenith_deg) scene.sun_zenith = glm::radians(*options.sun_zenith_deg);
   if (options.sun_azimuth_deg) scene.sun_azimuth = glm::radians(*options.sun_azimuth_deg);
   if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);

@@ -43,11 +43,11 @@ void rate(benchmark::State& state, const char* name, double count) {
 
 void forward(benchmark::State& state) {
   const TraceEffort effort{.paths = 1 << 19, .seed = 1, .threads = 1};
-  const ForwardResult check = traceForward(scene(), tree(), TraceLight{}, effort);
+  const ForwardResult check = traceForward(scene(), TraceLight{}, effort);
   const double sum = check.reflected.value + check.absorbed_leaves.value + check.arriving_ground.value;
   if (std::abs(sum - 1.) > 1e-9) return state.SkipWithError("energy is not conserved");
   double paths = 0.;
-  for (auto _ : state) paths += static_cast<double>(traceForward(scene(), tree(), TraceLight{}, effort).paths);
+  for (auto _ : state) paths += static_cast<double>(traceForward(scene(), TraceLight{}, effort).paths);
   rate(state, "paths_per_cpu_s", paths);
 }
 BENCHMARK(forward)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();

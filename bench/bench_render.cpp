@@ -18,7 +18,7 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 Scene sceneOf(TreeMesh mesh) {
   Scene scene;
-  scene.tree = std::make_shared<TreeMesh>(std::move(mesh));
+  scene.kinds[0].mesh = std::make_shared<TreeMesh>(std::move(mesh));
   scene.camera = Camera{.elevation = 35.f * kPi / 180.f, .azimuth = 20.f * kPi / 180.f, .half_width = 1.7f};
   return scene;
 }
@@ -45,7 +45,7 @@ double meanRadiance(const Image& image) {
 // does not change the time.
 void picture(benchmark::State& state, Model model) {
   const Scene scene = sceneOf(randomCrown({}, 1));
-  const DeepOpacityMap map(*scene.tree, scene.sun(), 512);
+  const DeepOpacityMap map(*scene.kinds[0].mesh, scene.sun(), 512);
   const gl::Context context;
   const std::vector<float> ones(16 * 16 * 16, 1.f);
   const gl::TreeRenderer renderer(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -7,13 +8,14 @@
 
 namespace sunfleck {
 
-// Where a copy of the prototype tree stands.
+// Where a tree stands, a copy of the prototype of its kind.
 struct Placement {
   glm::vec3 position{0.f};  // added to the prototype's vertices [m]
   float rotation = 0.f;     // about the vertical through the prototype's origin, counter-clockwise from above [rad]
+  std::uint32_t kind = 0;   // of those of the scene
 };
 
-// The arrangement of the copies of one prototype. With a period, the whole arrangement repeats without end in x and y.
+// The arrangement of the trees. With a period, the whole arrangement repeats without end in x and y.
 struct Stand {
   std::vector<Placement> trees{Placement{}};  // at least one
   std::optional<glm::vec2> period{};          // side lengths of the repeated rectangle [m], > 0

@@ -236,8 +236,9 @@ class Placed {
 void validate(const Stand& stand) {
   require(!stand.trees.empty(), "number of trees", stand.trees.size(), "at least 1");
   for (std::size_t i = 0; i < stand.trees.size(); ++i) {
-    const auto [position, rotation] = stand.trees[i];
+    const auto& [position, rotation, kind] = stand.trees[i];
     const std::string name = "tree " + std::to_string(i) + " ";
+    require(kind == 0, name + "kind", kind, "0");
     require(std::isfinite(rotation), name + "rotation [rad]", rotation, "finite");
     for (int axis = 0; axis < 3; ++axis)
       require(std::isfinite(position[axis]), name + "position [m]", position[axis], "finite");

@@ -46,7 +46,7 @@ void addIrradiance(Model model, std::span<const float> projection, std::span<con
 }  // namespace
 
 LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand) {
-  const TreeMesh& mesh = *scene.tree;
+  const TreeMesh& mesh = *scene.kinds[0].mesh;
   const auto start = Clock::now();
   LeafGeometry geometry;
   geometry.projections = leafProjections(mesh, scene.sun());

@@ -33,22 +33,42 @@ Bounds standing(const TreeMesh& tree, const Bounds& prototype, const Placement& 
   return box;
 }
 
+std::vector<Bounds> prototypeBounds(const Scene& scene) {
+  std::vector<Bounds> all;
+  for (const TreeKind& kind : scene.kinds) all.push_back(bounds(*kind.mesh));
+  return all;
+}
+
 }  // namespace
 
+std::vector<const TreeMesh*> meshes(const Scene& scene) {
+  std::vector<const TreeMesh*> all;
+  for (const TreeKind& kind : scene.kinds) all.push_back(kind.mesh.get());
+  return all;
+}
+
+std::string sourceOf(const Scene& scene) {
+  std::string all;
+  for (const TreeKind& kind : scene.kinds) all += (all.empty() ? "" : "; ") + kind.source;
+  return all;
+}
+
 Bounds bounds(const Scene& scene) {
-  const Bounds prototype = bounds(*scene.tree);
+  const std::vector<Bounds> prototypes = prototypeBounds(scene);
   Bounds box;
-  for (const Placement& placement : scene.stand.trees) box.include(standing(*scene.tree, prototype, placement));
+  for (const Placement& tree : scene.stand.trees)
+    box.include(standing(*scene.kindOf(tree).mesh, prototypes[tree.kind], tree));
   return box;
 }
 
 std::vector<std::size_t> treesInPicture(const Scene& scene, const Camera& camera) {
   const Axes axes = viewAxes(camera);
-  const Bounds prototype = bounds(*scene.tree);
+  const std::vector<Bounds> prototypes = prototypeBounds(scene);
   const float half_height = camera.half_width * static_cast<float>(camera.height) / static_cast<float>(camera.width);
   std::vector<std::size_t> seen;
   for (std::size_t i = 0; i < scene.stand.trees.size(); ++i) {
-    const Bounds box = standing(*scene.tree, prototype, scene.stand.trees[i]);
+    const Placement& tree = scene.stand.trees[i];
+    const Bounds box = standing(*scene.kindOf(tree).mesh, prototypes[tree.kind], tree);
     const glm::vec3 half = 0.5f * box.size(), away = box.centre() - camera.target;
     const bool beside = std::abs(glm::dot(away, axes.right)) > camera.half_width + glm::dot(half, glm::abs(axes.right));
     const bool above = std::abs(glm::dot(away, axes.up)) > half_height + glm::dot(half, glm::abs(axes.up));
@@ -63,7 +83,7 @@ Camera showingAll(const Scene& scene, Camera camera) {
   Bounds seen;  // along right, up and the direction of sight
   for (const Placement& placement : scene.stand.trees) {
     const float cosine = std::cos(placement.rotation), sine = std::sin(placement.rotation);
-    forVertices(*scene.tree, [&](const glm::vec3& v) {
+    forVertices(*scene.kindOf(placement).mesh, [&](const glm::vec3& v) {
       const glm::vec3 p = placed(v, placement, cosine, sine);
       seen.include({glm::dot(p, axes.right), glm::dot(p, axes.up), glm::dot(p, axes.along)});
     });

@@ -27,23 +27,33 @@ struct Camera {
 // Where a scene is looked at from unless it says so: somewhat from above, 10 degrees, and aside, 20 degrees.
 inline constexpr Camera kOverview{.elevation = 0.1745f, .azimuth = 0.3491f};
 
-// What is simulated: one prototype tree, its copies, the optics and the sun.
-struct Scene {
-  std::string name;
+// A kind of tree: its prototype and its optics.
+struct TreeKind {
+  std::string name;    // what the scene's trees call it
   std::string source;  // what the leaves came from: a file or a species with its seed
   Dropped dropped;     // triangles of no area that the file held
-  std::shared_ptr<const TreeMesh> tree;
-  Stand stand;
+  std::shared_ptr<const TreeMesh> mesh;
   std::array<LeafOptics, kBands> leaf;  // per band
   glm::vec3 wood_reflectance{0.3f};     // Lambertian, per band [1], 0 .. 1
-  glm::vec3 ground_albedo{0.f};         // Lambertian, per band [1], 0 .. 1
-  float sun_zenith = 0.f;               // [rad], 0 .. below pi/2
-  float sun_azimuth = 0.f;              // where the sun stands, from +x towards +y [rad]
-  std::optional<Camera> camera;         // none: one that shows the whole stand
-
-  Direction sun() const { return sunlight(sun_zenith, sun_azimuth); }
 };
 
+// What is simulated: kinds of trees, where they stand, the ground and the sun.
+struct Scene {
+  std::string name;
+  std::vector<TreeKind> kinds{TreeKind{}};  // at least one; of each stands a tree
+  Stand stand;
+  glm::vec3 ground_albedo{0.f};  // Lambertian, per band [1], 0 .. 1
+  float sun_zenith = 0.f;        // [rad], 0 .. below pi/2
+  float sun_azimuth = 0.f;       // where the sun stands, from +x towards +y [rad]
+  std::optional<Camera> camera;  // none: one that shows the whole stand
+
+  Direction sun() const { return sunlight(sun_zenith, sun_azimuth); }
+  const TreeKind& kindOf(const Placement& tree) const { return kinds[tree.kind]; }
+};
+
+std::vector<const TreeMesh*> meshes(const Scene& scene);  // of the kinds
+// What the leaves of all kinds came from, for people.
+std::string sourceOf(const Scene& scene);
 Bounds bounds(const Scene& scene);    // of all trees of the stand [m]
 Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
 // The camera moved and widened so that the whole stand fills its picture; direction and pixels stay.

@@ -23,15 +23,15 @@ float degrees(detail::SceneTable& table, const std::string& key, double low, dou
 }
 
 void growTree(Scene& scene, const std::string& species_name, std::uint64_t seed) {
-  scene.tree = std::make_shared<const TreeMesh>(grow(species(species_name), seed));
-  scene.source = fmt::format("species {}, seed {}", species_name, seed);
+  scene.kinds[0].mesh = std::make_shared<const TreeMesh>(grow(species(species_name), seed));
+  scene.kinds[0].source = fmt::format("species {}, seed {}", species_name, seed);
 }
 
 void importFile(Scene& scene, const std::filesystem::path& file, const ImportRules& rules) {
   ImportedTree imported = importTree(file, rules);
-  scene.tree = std::make_shared<const TreeMesh>(std::move(imported.mesh));
-  scene.source = fmt::format("{} (leaf and wood: {})", file.string(), imported.how);
-  scene.dropped = imported.dropped;
+  scene.kinds[0].mesh = std::make_shared<const TreeMesh>(std::move(imported.mesh));
+  scene.kinds[0].source = fmt::format("{} (leaf and wood: {})", file.string(), imported.how);
+  scene.kinds[0].dropped = imported.dropped;
 }
 
 // `side` x `side` trees, `spacing` apart, around the origin.
@@ -67,7 +67,7 @@ void readTree(Scene& scene, detail::SceneTable tree, const std::filesystem::path
 
 void readStand(Scene& scene, detail::SceneTable stand) {
   const std::string kind = stand.text("kind", "single");
-  const glm::vec2 touching = touchingPeriod(*scene.tree);
+  const glm::vec2 touching = touchingPeriod(*scene.kinds[0].mesh);
   const auto sides = [&](const std::string& key) {
     if (!stand.has(key)) return touching;
     const auto v = stand.numbers(key, 2, 1e-6, 1e6, "two lengths in [1e-6, 1e6] m: [x, y]");
@@ -92,11 +92,11 @@ void readOptics(Scene& scene, detail::SceneTable leaf, detail::SceneTable wood, 
   const glm::vec3 reflectance = leaf.perBand("reflectance", 0.475f);
   const glm::vec3 transmittance = leaf.perBand("transmittance", 0.475f);
   for (int band = 0; band < kBands; ++band) {
-    scene.leaf[static_cast<std::size_t>(band)] = {.reflectance = reflectance[band],
-                                                  .transmittance = transmittance[band]};
-    validate(scene.leaf[static_cast<std::size_t>(band)]);
+    scene.kinds[0].leaf[static_cast<std::size_t>(band)] = {.reflectance = reflectance[band],
+                                                           .transmittance = transmittance[band]};
+    validate(scene.kinds[0].leaf[static_cast<std::size_t>(band)]);
   }
-  scene.wood_reflectance = wood.perBand("reflectance", 0.3f);
+  scene.kinds[0].wood_reflectance = wood.perBand("reflectance", 0.3f);
   scene.ground_albedo = ground.perBand("albedo", 0.f);
   for (const detail::SceneTable* table : {&leaf, &wood, &ground}) table->done();
 }
@@ -180,11 +180,11 @@ constexpr LeafOptics kPaperLeaf{.reflectance = 0.475f, .transmittance = 0.475f};
 std::optional<Scene> builtin(const std::string& name) {
   Scene scene;
   scene.name = name;
-  scene.leaf.fill(kPaperLeaf);
+  scene.kinds[0].leaf.fill(kPaperLeaf);
   if (name == "slab") {
     const RandomLayer layer{};
-    scene.tree = std::make_shared<const TreeMesh>(randomLayer(layer, 1));
-    scene.source = fmt::format("random square leaves, LAI {}, seed 1", layer.leaf_area_index);
+    scene.kinds[0].mesh = std::make_shared<const TreeMesh>(randomLayer(layer, 1));
+    scene.kinds[0].source = fmt::format("random square leaves, LAI {}, seed 1", layer.leaf_area_index);
     scene.stand.period = layer.size;
     return scene;
   }
@@ -194,8 +194,9 @@ std::optional<Scene> builtin(const std::string& name) {
   if (std::find(known.begin(), known.end(), plant) == known.end()) return std::nullopt;
   if (copies != "" && copies != "1" && copies != "16" && copies != "64") return std::nullopt;
   growTree(scene, plant, 1);
-  if (copies == "16" || copies == "64") scene.stand.trees = square(copies == "16" ? 4 : 8, touchingPeriod(*scene.tree));
-  if (name == "periodic") scene.stand.period = touchingPeriod(*scene.tree);
+  if (copies == "16" || copies == "64")
+    scene.stand.trees = square(copies == "16" ? 4 : 8, touchingPeriod(*scene.kinds[0].mesh));
+  if (name == "periodic") scene.stand.period = touchingPeriod(*scene.kinds[0].mesh);
   return scene;
 }
 
@@ -219,7 +220,7 @@ Scene readScene(const std::string& name_or_file, const ImportRules& rules) {
   if (file.has_extension()) {
     Scene scene;
     scene.name = file.stem().string();
-    scene.leaf.fill(kPaperLeaf);
+    scene.kinds[0].leaf.fill(kPaperLeaf);
     importFile(scene, file, rules);
     return scene;
   }

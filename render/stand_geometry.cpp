@@ -9,12 +9,14 @@ namespace sunfleck {
 
 void requireModelled(const Scene& scene) {
   const Stand& stand = scene.stand;
+  require(scene.kinds.size() == 1, "number of kinds of trees", scene.kinds.size(),
+          "1 for the models (trace takes any)");
   require(stand.trees.size() <= kMostTrees, "number of trees", stand.trees.size(),
           "at most " + std::to_string(kMostTrees) + " for the models (trace takes any)");
   for (const Placement& tree : stand.trees)
     require(tree.rotation == 0.f, "rotation of a tree", tree.rotation,
             "0 for the models: their maps serve translated copies only (trace takes any)");
-  periodsAround(stand, leafBounds(*scene.tree));
+  periodsAround(stand, leafBounds(*scene.kinds[0].mesh));
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort)
@@ -28,12 +30,12 @@ void StandGeometry::update(const Scene& scene, Model model, std::optional<std::s
                            const Progress& progress) {
   requireModelled(scene);
   if (!tree_)
-    stand_->addPrototype(scene.tree);
-  else if (tree_ != scene.tree) {
+    stand_->addPrototype(scene.kinds[0].mesh);
+  else if (tree_ != scene.kinds[0].mesh) {
     stand_->setPeriod(std::nullopt);  // the former scene's may not suit the tree
-    stand_->replacePrototype(0, scene.tree);
+    stand_->replacePrototype(0, scene.kinds[0].mesh);
   }
-  tree_ = scene.tree;
+  tree_ = scene.kinds[0].mesh;
   stand_->setPeriod(scene.stand.period);
   const std::size_t before = stand_->instances(), now = scene.stand.trees.size();
   for (std::size_t i = 0; i < now; ++i)

@@ -157,7 +157,7 @@ TEST(R2_CameraTrace, RadianceIntegratesToTheForwardReflectance) {
       reflected += weight * result.mean.value;
       variance += std::pow(weight * result.mean.standard_error, 2);
     }
-  const ForwardResult forward = traceForward(scene, mesh, light, {.paths = 100'000});
+  const ForwardResult forward = traceForward(scene, light, {.paths = 100'000});
   EXPECT_NEAR(reflected, forward.reflected.value,
               5. * std::hypot(std::sqrt(variance), forward.reflected.standard_error) + 1e-3);
 }

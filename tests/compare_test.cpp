@@ -94,8 +94,10 @@ TEST(SvgPlot, HoldsNoNanInTheCorners) {
 
 Validation smallValidation(bool periodic, float albedo) {
   const RandomLayer layer{.size = {0.5f, 0.5f}, .height = 0.5f, .leaf_side = 0.04f, .leaf_area_index = 3.f};
-  Scene scene{.name = "<layer>", .source = "test", .tree = std::make_shared<const TreeMesh>(randomLayer(layer, 1))};
-  scene.leaf.fill({.reflectance = 0.5f * albedo, .transmittance = 0.5f * albedo});
+  Scene scene{.name = "<layer>"};
+  scene.kinds[0].source = "test";
+  scene.kinds[0].mesh = std::make_shared<const TreeMesh>(randomLayer(layer, 1));
+  scene.kinds[0].leaf.fill({.reflectance = 0.5f * albedo, .transmittance = 0.5f * albedo});
   if (periodic) scene.stand.period = layer.size;
   StandGeometry stand({.light_resolution = 128, .sample_resolution = 64, .cells = 8});
   stand.update(scene, Model::sppg);
@@ -122,8 +124,9 @@ TEST(R7_LeafIrradiance, OfFlatLeavesUnderTheSun) {
     for (const glm::uvec3 t : {glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)}) mesh.leaf_triangles.push_back(first + t);
   }
   finish(mesh, "test");
-  Scene scene{.name = "two", .source = "test", .tree = std::make_shared<const TreeMesh>(mesh)};
-  scene.leaf.fill({.reflectance = 0.f, .transmittance = 0.f});
+  Scene scene{.name = "two"};
+  scene.kinds[0].mesh = std::make_shared<const TreeMesh>(mesh);
+  scene.kinds[0].leaf.fill({.reflectance = 0.f, .transmittance = 0.f});
   StandGeometry stand({.light_resolution = 32, .sample_resolution = 32, .cells = 4});
   stand.update(scene, Model::sppg);
   const Validation v = validate(scene, stand, {.trace = {.paths = 10'000, .seed = 2}});

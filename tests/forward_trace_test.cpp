@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -53,7 +54,7 @@ TEST(R1_ForwardTrace, ConservesEnergy) {
     for (float ground : {0.f, 1.f}) {
       Stand stand{.period = glm::vec2(1.3f, 0.8f)};
       const RayScene scene(mesh, stand, true);
-      const ForwardResult result = traceForward(scene, mesh,
+      const ForwardResult result = traceForward(scene,
                                                 {.sun = sunlight(40.f * kDegree, 1.f),
                                                  .leaf = {.reflectance = albedo * 0.5f, .transmittance = albedo * 0.5f},
                                                  .ground_albedo = ground},
@@ -80,7 +81,7 @@ TEST(R1_ForwardTrace, HorizontalLeafUnderZenithSun) {
   finish(mesh, "leaf");
   const RayScene scene(mesh, Stand{}, true);
   const ForwardResult result =
-      traceForward(scene, mesh, {.leaf = {.reflectance = 0.3f, .transmittance = 0.5f}}, {.paths = 64'000});
+      traceForward(scene, {.leaf = {.reflectance = 0.3f, .transmittance = 0.5f}}, {.paths = 64'000});
   EXPECT_NEAR(result.leaf_irradiance[0], 1., 1e-12);
   EXPECT_NEAR(result.leaf_standard_error[0], 0., 1e-12);
   EXPECT_TRUE(agrees(result.reflected, 0.3));
@@ -104,12 +105,55 @@ TEST(R1_ForwardTrace, FlatLeafDoesNotMeetItself) {
     const Direction sun = sunlight(50.f * kDegree, random.uniform() * 6.f);
     const TraceEffort effort{.paths = 6400};
     const ForwardResult white =
-        traceForward(scene, mesh, {.sun = sun, .leaf = {.reflectance = 0.5f, .transmittance = 0.5f}}, effort);
-    const ForwardResult black = traceForward(scene, mesh, {.sun = sun, .leaf = {0.f, 0.f}}, effort);
+        traceForward(scene, {.sun = sun, .leaf = {.reflectance = 0.5f, .transmittance = 0.5f}}, effort);
+    const ForwardResult black = traceForward(scene, {.sun = sun, .leaf = {0.f, 0.f}}, effort);
     EXPECT_EQ(white.leaf_irradiance, black.leaf_irradiance) << i;
     EXPECT_GT(black.absorbed_leaves.value, 0.);
     EXPECT_EQ(white.absorbed_leaves.value, 0.);
   }
+}
+
+// Check two sheets without end, each of a kind of its own, in the order of the kinds and against it: with r and t of
+// the upper (a) and of the lower (b), D = t_a / (1 - r_a r_b) arrives at the lower and D r_b comes back up.
+TEST(R1_ForwardTrace, EachKindHasItsOpticsAndLeaves) {
+  const auto sheet = [](float z) {
+    TreeMesh mesh;
+    addPolygon(mesh, mesh.leaf_triangles, rectangle({0, 0, z}, {.5f, 0, 0}, {0, .5f, 0}));
+    finish(mesh, "sheet");
+    return mesh;
+  };
+  const TreeMesh high = sheet(2.f), low = sheet(1.5f);
+  const LeafOptics a{.reflectance = 0.5f, .transmittance = 0.4f}, b{.reflectance = 0.3f, .transmittance = 0.1f};
+  const double down = 0.4 / (1. - 0.5 * 0.3), up = 0.3 * down;
+  for (const std::size_t first : {0u, 1u}) {  // whether the upper is
+    const std::array kinds = first == 0 ? std::array{&high, &low} : std::array{&low, &high};
+    const Stand stand{.trees = {{.kind = 0}, {.position = {0.3f, 0.1f, 0.f}, .kind = 1}}, .period = glm::vec2(1.f)};
+    const RayScene scene(kinds, stand, true);
+    TraceLight light{.of_kinds = {{a, 0.f}, {b, 0.f}}};
+    if (first == 1) std::swap(light.of_kinds[0], light.of_kinds[1]);
+    const ForwardResult result = traceForward(scene, light, {.paths = 200'000});
+    ASSERT_EQ(result.leaf_irradiance.size(), 2u);
+    EXPECT_TRUE(agrees(leafIrradiance(result, first), 1. + up));
+    EXPECT_TRUE(agrees(leafIrradiance(result, 1 - first), down));
+    EXPECT_TRUE(agrees(result.reflected, 0.5 + 0.4 * up));
+    EXPECT_TRUE(agrees(result.arriving_ground, 0.1 * down));
+  }
+}
+
+// Check that a leaf's irradiance is the mean over the trees of its kind, however many of the other kind there are.
+TEST(R1_ForwardTrace, IrradianceIsTheMeanOverTheTreesOfItsKind) {
+  const glm::vec3 normal = glm::normalize(glm::vec3(0.4f, -0.7f, 0.5f));
+  TreeMesh level, tilted;
+  addPolygon(level, level.leaf_triangles, disc({0, 0, 1}, {0, 0, 1}, 0.3));
+  addPolygon(tilted, tilted.leaf_triangles, disc({0, 0, 1}, normal, 0.2));
+  finish(level, "level");
+  finish(tilted, "tilted");
+  const RayScene scene(std::array<const TreeMesh*, 2>{&level, &tilted},
+                       {.trees = {{}, {.position = {0, 20, 0}, .kind = 1}, {.position = {0, -20, 0}, .kind = 1}}},
+                       true);
+  const ForwardResult result = traceForward(scene, {.leaf = {0.f, 0.f}}, {.paths = 1'000'000});
+  EXPECT_TRUE(agrees(leafIrradiance(result, 0), 1.));
+  EXPECT_TRUE(agrees(leafIrradiance(result, 1), std::abs(double{normal.z})));
 }
 
 // Check the irradiance |n . s| of a lone tilted leaf, single or in a sparse stand of turned copies, for a tilted sun.
@@ -122,14 +166,14 @@ TEST(R1_ForwardTrace, TiltedLeafReceivesTheCosine) {
   const TraceEffort effort{.paths = 200'000};
 
   const RayScene single(mesh, Stand{}, true);
-  const ForwardResult one = traceForward(single, mesh, {.sun = sun}, effort);
+  const ForwardResult one = traceForward(single, {.sun = sun}, effort);
   EXPECT_TRUE(agrees(leafIrradiance(one, 0), std::abs(double{glm::dot(normal, sun)})));
 
   // Two copies 30 m apart, one turned by a quarter; what each scatters onto the other is below 1e-5.
   const RayScene pair(mesh, {.trees = {{}, {.position = {0, 30, 0}, .rotation = 90.f * kDegree}}}, true);
   const glm::vec3 turned(-normal.y, normal.x, normal.z);
   const double mean = 0.5 * (std::abs(double{glm::dot(normal, sun)}) + std::abs(double{glm::dot(turned, sun)}));
-  const ForwardResult two = traceForward(pair, mesh, {.sun = sun}, {.paths = 1'000'000});
+  const ForwardResult two = traceForward(pair, {.sun = sun}, {.paths = 1'000'000});
   EXPECT_TRUE(agrees(leafIrradiance(two, 0), mean, 1e-5));
 }
 
@@ -141,7 +185,7 @@ TEST(R1_ForwardTrace, TwoSheetsMatchAddingDoubling) {
   for (const auto& [r, t, ground] : {std::tuple{0.3, 0.5, 0.}, {0.6, 0.4, 0.5}, {0.05, 0.02, 0.15}, {0.5, 0.5, 0.}}) {
     const float zenith = 55.f * kDegree;
     const ForwardResult result =
-        traceForward(scene, mesh,
+        traceForward(scene,
                      {.sun = sunlight(zenith, 0.3f),
                       .leaf = {.reflectance = static_cast<float>(r), .transmittance = static_cast<float>(t)},
                       .ground_albedo = static_cast<float>(ground)},
@@ -172,12 +216,12 @@ TEST(R1_ForwardTrace, WoodReflectsAndAbsorbs) {
   addPolygon(mesh, mesh.wood_triangles, rectangle({1.5f, 0.5f, 1}, {.5f, 0, 0}, {0, .5f, 0}));
   finish(mesh, "leaf and plank");
   const TraceLight light{.leaf = {.reflectance = 0.f, .transmittance = 0.f}, .wood_reflectance = 0.25f};
-  const ForwardResult with = traceForward(RayScene(mesh, Stand{}, true), mesh, light, {.paths = 64'000});
+  const ForwardResult with = traceForward(RayScene(mesh, Stand{}, true), light, {.paths = 64'000});
   EXPECT_TRUE(agrees(with.absorbed_leaves, 0.5));
   EXPECT_TRUE(agrees(with.absorbed_wood, 0.375));
   EXPECT_TRUE(agrees(with.reflected, 0.125));
   EXPECT_EQ(with.arriving_ground.value, 0.);
-  const ForwardResult without = traceForward(RayScene(mesh, Stand{}, false), mesh, light, {.paths = 64'000});
+  const ForwardResult without = traceForward(RayScene(mesh, Stand{}, false), light, {.paths = 64'000});
   EXPECT_NEAR(without.absorbed_leaves.value, 1., 1e-12);
   EXPECT_EQ(without.absorbed_wood.value, 0.);
 }
@@ -198,13 +242,13 @@ TEST(R1_ForwardTrace, PeriodicStandDoesNotDependOnItsCell) {
   finish(home, "leaves moved home");
   const TraceLight light{.sun = sunlight(30.f * kDegree, 2.f), .ground_albedo = 0.3f};
   const TraceEffort effort{.paths = 60'000};
-  const ForwardResult a = traceForward(RayScene(wide, {.period = period}, true), wide, light, effort);
+  const ForwardResult a = traceForward(RayScene(wide, {.period = period}, true), light, effort);
   const ForwardResult b =
-      traceForward(RayScene(home, {.period = period}, true), home, light, {.paths = effort.paths, .seed = 2});
+      traceForward(RayScene(home, {.period = period}, true), light, {.paths = effort.paths, .seed = 2});
   Stand four{.trees = {}, .period = 2.f * period};
   for (float x : {0.f, period.x})
     for (float y : {0.f, period.y}) four.trees.push_back({.position = {x, y, 0.f}});
-  const ForwardResult c = traceForward(RayScene(wide, four, true), wide, light, {.paths = effort.paths, .seed = 3});
+  const ForwardResult c = traceForward(RayScene(wide, four, true), light, {.paths = effort.paths, .seed = 3});
   for (const ForwardResult* other : {&b, &c}) {
     EXPECT_TRUE(agree(a.reflected, other->reflected));
     EXPECT_TRUE(agree(a.absorbed_leaves, other->absorbed_leaves));
@@ -222,8 +266,8 @@ TEST(R1_ForwardTrace, StandardErrorsAreCalibrated) {
   const TreeMesh mesh = leafBox(400, 8);
   const RayScene scene(mesh, Stand{}, true);
   const TraceLight light{.sun = sunlight(20.f * kDegree, 0.f)};
-  const ForwardResult a = traceForward(scene, mesh, light, {.paths = 64'000, .seed = 1});
-  const ForwardResult b = traceForward(scene, mesh, light, {.paths = 64'000, .seed = 2});
+  const ForwardResult a = traceForward(scene, light, {.paths = 64'000, .seed = 1});
+  const ForwardResult b = traceForward(scene, light, {.paths = 64'000, .seed = 2});
   double sum = 0.;
   for (std::size_t i = 0; i < mesh.leaf_count; ++i)
     sum += std::pow(a.leaf_irradiance[i] - b.leaf_irradiance[i], 2) /
@@ -237,10 +281,10 @@ TEST(R1_ForwardTrace, IsTheSameForAnyNumberOfThreads) {
   const TreeMesh mesh = leafBox(100, 1);
   const RayScene scene(mesh, {.period = glm::vec2(2.f, 1.f)}, true);
   const TraceLight light{.sun = sunlight(35.f * kDegree, 1.f), .ground_albedo = 0.2f};
-  const ForwardResult one = traceForward(scene, mesh, light, {.paths = 10'000, .threads = 1});
+  const ForwardResult one = traceForward(scene, light, {.paths = 10'000, .threads = 1});
   EXPECT_EQ(one.paths, 10'048u);  // 64 batches of 157
   for (int threads : {0, 2, 5}) {
-    const ForwardResult many = traceForward(scene, mesh, light, {.paths = 10'000, .threads = threads});
+    const ForwardResult many = traceForward(scene, light, {.paths = 10'000, .threads = threads});
     EXPECT_EQ(one.leaf_irradiance, many.leaf_irradiance);
     EXPECT_EQ(one.leaf_standard_error, many.leaf_standard_error);
     EXPECT_EQ(one.reflected.value, many.reflected.value);
@@ -256,7 +300,7 @@ TEST(R1_ForwardTrace, EndsEarlyWithWhatIsThere) {
   const TraceLight light{.sun = sunlight(35.f * kDegree, 1.f)};
   for (int batches : {1, 3}) {
     std::vector<double> calls;
-    const ForwardResult result = traceForward(scene, mesh, light, {.paths = 64'000}, [&](double done) {
+    const ForwardResult result = traceForward(scene, light, {.paths = 64'000}, [&](double done) {
       calls.push_back(done);
       return static_cast<int>(calls.size()) < batches;
     });
@@ -278,14 +322,14 @@ TEST(R1_ForwardTrace, EndsEarlyWithWhatIsThere) {
 TEST(R1_ForwardTrace, RefusesInvalidInput) {
   const TreeMesh mesh = leafBox(5, 1);
   const RayScene single(mesh, Stand{}, true);
-  const auto trace = [&](const TraceLight& light, const TraceEffort& effort) {
-    traceForward(single, mesh, light, effort);
-  };
+  const auto trace = [&](const TraceLight& light, const TraceEffort& effort) { traceForward(single, light, effort); };
   EXPECT_THROW(trace({.sun = {0, 0, 1}}, {}), InvalidInput);
   EXPECT_THROW(trace({.sun = {0, 0, -2}}, {}), InvalidInput);
   EXPECT_THROW(trace({.sun = {0, 0, std::nanf("")}}, {}), InvalidInput);
   EXPECT_THROW(trace({.leaf = {0.9f, 0.9f}}, {}), InvalidInput);
   EXPECT_THROW(trace({.wood_reflectance = -0.1f}, {}), InvalidInput);
+  EXPECT_THROW(trace({.of_kinds = {{}, {}}}, {}), InvalidInput);
+  EXPECT_THROW(trace({.of_kinds = {{.leaf = {0.9f, 0.9f}}}}, {}), InvalidInput);
   EXPECT_THROW(trace({}, {.paths = 63}), InvalidInput);
   EXPECT_THROW(trace({}, {.threads = -1}), InvalidInput);
   try {

@@ -83,8 +83,8 @@ struct Rectangles {
 
   Scene scene() const {
     Scene scene;
-    scene.tree = std::make_shared<TreeMesh>(mesh);
-    scene.leaf = {LeafOptics{0.1f, 0.3f}, LeafOptics{0.5f, 0.4f}, LeafOptics{0.475f, 0.475f}};
+    scene.kinds[0].mesh = std::make_shared<TreeMesh>(mesh);
+    scene.kinds[0].leaf = {LeafOptics{0.1f, 0.3f}, LeafOptics{0.5f, 0.4f}, LeafOptics{0.475f, 0.475f}};
     return scene;
   }
 };
@@ -108,7 +108,7 @@ void expectRadiance(const Image& image, int x, int y, glm::vec3 expected, float 
 }
 
 glm::vec3 perBand(const Scene& scene, const auto& of) {
-  return {of(scene.leaf[0]), of(scene.leaf[1]), of(scene.leaf[2])};
+  return {of(scene.kinds[0].leaf[0]), of(scene.kinds[0].leaf[1]), of(scene.kinds[0].leaf[2])};
 }
 
 // Powers of the slab less direct light.
@@ -258,8 +258,9 @@ TEST(R3_TreePicture, SmoothsTheRimOfAShadow) {
 TEST(R3_TreePicture, OfWood) {
   const Rectangles tree({{kWide.low, kWide.high, 1.f, true}, {kWide.low, kWide.high, 0.f}});
   Scene scene = tree.scene();
-  scene.wood_reflectance = {0.2f, 0.3f, 0.4f};
-  expectRadiance(picture(scene, tree.map, cameraFrom(90.f), Model::ss), 2, 2, scene.wood_reflectance / kPi, kRounding);
+  scene.kinds[0].wood_reflectance = {0.2f, 0.3f, 0.4f};
+  expectRadiance(picture(scene, tree.map, cameraFrom(90.f), Model::ss), 2, 2, scene.kinds[0].wood_reflectance / kPi,
+                 kRounding);
   expectRadiance(picture(scene, tree.map, cameraFrom(-90.f), Model::ss), 2, 2, glm::vec3(0.f), 0.f);
 }
 
@@ -317,7 +318,7 @@ TEST(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
     scene.sun_zenith = 0.25f * kPi;
     scene.sun_azimuth = azimuth;
     scene.camera = cameraFrom(90.f, 0.1f, 2);
-    const DeepOpacityMap map(*scene.tree, scene.sun(), 64);
+    const DeepOpacityMap map(*scene.kinds[0].mesh, scene.sun(), 64);
     const CellGrid cells{
         .low = glm::vec3(-3.f), .cell_size = 2.f, .size = glm::ivec3(3), .slot = std::vector<std::uint32_t>(27)};
     const std::vector<float> quarter(27, 0.25f);

@@ -130,7 +130,7 @@ TEST(SceneGeometry, ViewAxesLookFromTheEye) {
 // Check the box of a stand with a shifted and a rotated tree. Error: a few roundings.
 TEST(SceneGeometry, BoundsHoldAllTrees) {
   Scene scene;
-  scene.tree = oneLeaf();
+  scene.kinds[0].mesh = oneLeaf();
   scene.stand.trees = {{.position = {10.f, 0.f, 0.f}}, {.rotation = std::numbers::pi_v<float>}};
   const Bounds box = bounds(scene);
   EXPECT_LT(glm::length(box.low - glm::vec3(-3.f, -1.f, 0.f)), 2e-6f);
@@ -141,11 +141,11 @@ TEST(SceneGeometry, BoundsHoldAllTrees) {
 // a tree as wide as high; and that the scene's own camera is kept.
 TEST(SceneGeometry, CameraShowsTheWholeStand) {
   Scene scene;
-  scene.tree = oneLeaf();
+  scene.kinds[0].mesh = oneLeaf();
   const Camera camera = cameraOf(scene);
   const Axes axes = viewAxes(camera);
   float farthest = 0.f;
-  for (const glm::vec3& vertex : scene.tree->vertices)
+  for (const glm::vec3& vertex : scene.kinds[0].mesh->vertices)
     for (const glm::vec3& axis : {axes.right, axes.up})
       farthest = std::max(farthest, std::abs(glm::dot(vertex - camera.target, axis)));
   EXPECT_LT(farthest, camera.half_width);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
@@ -45,13 +46,16 @@ TEST(R5_LeafCrossings, CountsSharedEdgesOnce) {
   EXPECT_EQ(scene.crossings({3, 3, 5.f}, {0, 0, -1}), 0);
 }
 
-// Check counts through random crowns, turned and moved, against every triangle tried in double precision. A line that
-// passes an edge within rounding (1e-7 of 0.1 m, some 1e4 edges: 1e-2 over all lines) could differ; these do not.
+// Check counts through random crowns of two kinds, turned and moved, against every triangle tried in double precision.
+// A line that passes an edge within rounding (1e-7 of 0.1 m, some 1e4 edges: 1e-2 over all lines) could differ; these
+// do not.
 TEST(R5_LeafCrossings, MatchesEveryTriangleTried) {
-  const TreeMesh mesh = leafBox(300, 4);
-  const Stand stand{
-      .trees = {{.position = {0.5f, 0.f, 0.25f}, .rotation = 0.f}, {.position = {0.f, 0.5f, 0.f}, .rotation = 2.1f}}};
-  const RayScene scene(mesh, stand, true);
+  const TreeMesh one = leafBox(300, 4), other = leafBox(200, 5);
+  const std::array kinds{&one, &other};
+  const Stand stand{.trees = {{.position = {0.5f, 0.f, 0.25f}, .rotation = 0.f, .kind = 1},
+                              {.position = {0.f, 0.5f, 0.f}, .rotation = 2.1f},
+                              {.position = {0.f, 0.f, 0.2f}, .rotation = -1.f, .kind = 1}}};
+  const RayScene scene(kinds, stand, true);
   Random random(6, 0);
   int total = 0;
   for (int line = 0; line < 300; ++line) {
@@ -59,6 +63,7 @@ TEST(R5_LeafCrossings, MatchesEveryTriangleTried) {
     const glm::vec3 along = glm::normalize(0.7f * onSphere(random) - from);
     int expected = 0;
     for (const Placement& tree : stand.trees) {
+      const TreeMesh& mesh = *kinds[tree.kind];
       const double c = std::cos(double{tree.rotation}), s = std::sin(double{tree.rotation});
       const auto placed = [&](std::uint32_t vertex) {
         const glm::dvec3 v = mesh.vertices[vertex];
@@ -93,6 +98,9 @@ TEST(RayScene, BoxHoldsWhatCanBeHit) {
 TEST(RayScene, RefusesInvalidStands) {
   const TreeMesh mesh = leafBox(3, 1);
   const auto make = [&](const Stand& stand) { RayScene(mesh, stand, true); };
+  EXPECT_THROW(make({.trees = {{.kind = 1}}}), InvalidInput);
+  EXPECT_THROW(RayScene(std::array<const TreeMesh*, 2>{&mesh, &mesh}, Stand{}, true),
+               InvalidInput);  // none of the second
   EXPECT_THROW(make({.trees = {}}), InvalidInput);
   EXPECT_THROW(make({.trees = {{.position = {0, std::nanf(""), 0}}}}), InvalidInput);
   EXPECT_THROW(make({.trees = {{.rotation = std::numeric_limits<float>::infinity()}}}), InvalidInput);

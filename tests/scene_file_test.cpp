@@ -75,16 +75,16 @@ width = 64
 height = 32
 )"));
   EXPECT_EQ(scene.name, "A name");
-  EXPECT_EQ(scene.tree->leaf_count, 1u);
-  EXPECT_DOUBLE_EQ(leafArea(*scene.tree), 8.);
+  EXPECT_EQ(scene.kinds[0].mesh->leaf_count, 1u);
+  EXPECT_DOUBLE_EQ(leafArea(*scene.kinds[0].mesh), 8.);
   ASSERT_TRUE(scene.stand.period);
   EXPECT_EQ(*scene.stand.period, glm::vec2(7.f, 8.f));
   ASSERT_EQ(scene.stand.trees.size(), 2u);
   EXPECT_EQ(scene.stand.trees[1].position, glm::vec3(3.f, 4.f, 0.f));
   EXPECT_NEAR(scene.stand.trees[1].rotation, 1.5707963f, 1e-6f);
-  EXPECT_FLOAT_EQ(scene.leaf[2].reflectance, 0.3f);
-  EXPECT_FLOAT_EQ(scene.leaf[2].transmittance, 0.4f);
-  EXPECT_EQ(scene.wood_reflectance, glm::vec3(0.25f));
+  EXPECT_FLOAT_EQ(scene.kinds[0].leaf[2].reflectance, 0.3f);
+  EXPECT_FLOAT_EQ(scene.kinds[0].leaf[2].transmittance, 0.4f);
+  EXPECT_EQ(scene.kinds[0].wood_reflectance, glm::vec3(0.25f));
   EXPECT_EQ(scene.ground_albedo, glm::vec3(0.5f, 0.6f, 0.7f));
   EXPECT_NEAR(scene.sun().y, -std::sqrt(0.75f), 1e-6f);  // from +y, 60 degrees from overhead
   EXPECT_NEAR(scene.sun().z, -0.5f, 1e-6f);

@@ -234,7 +234,7 @@ TEST(D10_StandAgainstRays, SkyLightOfLeaves) {
     for (const Direction& direction : directions) {
       sky.emplace_back(direction.z > 0.f ? 1.f : 0.f);
       if (direction.z <= 0.f) continue;
-      const ForwardResult traced = traceForward(pair.rays[0], *mesh, {.sun = -direction}, {.paths = 20000});
+      const ForwardResult traced = traceForward(pair.rays[0], {.sun = -direction}, {.paths = 20000});
       for (std::size_t leaf = 0; leaf < areas.size(); ++leaf)
         by_suns += traced.leaf_irradiance[leaf] * areas[leaf] / area;
     }

@@ -132,7 +132,7 @@ TEST(R1_ForwardTrace, MatchesOtherTracersOnTheReferenceCanopy) {
     }
     finish(mesh, "canopy");
     const RayScene scene(mesh, {.period = glm::vec2(6.f)}, true);
-    const ForwardResult result = traceForward(scene, mesh, {.sun = sun}, {.paths = 20'000});
+    const ForwardResult result = traceForward(scene, {.sun = sun}, {.paths = 20'000});
     EXPECT_NEAR(result.arriving_ground_direct.value, std::exp(-0.5 * 3. / std::cos(20. * std::numbers::pi / 180.)),
                 0.05);
     return;
@@ -167,7 +167,7 @@ TEST(R1_ForwardTrace, MatchesOtherTracersOnTheReferenceCanopy) {
   }
   ASSERT_EQ(bands.size(), 2u);
   for (const auto& [soil, reference] : bands) {
-    const ForwardResult result = traceForward(scene, mesh, lights[soil], {.paths = 160'000});
+    const ForwardResult result = traceForward(scene, lights[soil], {.paths = 160'000});
     EXPECT_TRUE(agree(result.reflected, reference.at("reflected"))) << soil;
     EXPECT_TRUE(agree(result.absorbed_leaves, reference.at("absorbed_by_leaves"))) << soil;
     EXPECT_TRUE(agree(result.arriving_ground, reference.at("arriving_at_soil"))) << soil;

@@ -36,7 +36,7 @@ std::vector<float> compensationBy(const Scene& scene, const std::vector<Directio
                       .sample_resolution = effort.sample_resolution,
                       .light_resolution = effort.light_resolution,
                       .cells = effort.cells});
-  stand.addPrototype(scene.tree);
+  stand.addPrototype(scene.kinds[0].mesh);
   for (const Placement& tree : scene.stand.trees) stand.add(0, tree.position);
   stand.setPeriod(scene.stand.period);
   const Direction sun = scene.sun();

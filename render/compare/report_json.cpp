@@ -15,11 +15,11 @@ Json orNull(const std::optional<double>& value) {
 void add(Json& json, const Validation& v) {
   const double degrees = 180. / std::numbers::pi;
   json["scene"] = {{"name", v.scene.name},
-                   {"source", v.scene.source},
+                   {"source", sourceOf(v.scene)},
                    {"periodic", v.scene.stand.period.has_value()},
                    {"trees", v.scene.stand.trees.size()},
-                   {"leaves", v.scene.tree->leaf_count},
-                   {"leaf_triangles", v.scene.tree->leaf_triangles.size()},
+                   {"leaves", v.scene.kinds[0].mesh->leaf_count},
+                   {"leaf_triangles", v.scene.kinds[0].mesh->leaf_triangles.size()},
                    {"leaf_area_m2", v.leaf_area},
                    {"mean_depth", v.mean_depth},
                    {"mean_thickness", v.mean_thickness},

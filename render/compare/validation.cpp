@@ -32,6 +32,13 @@ double categoryNoise(const ForwardResult& reference, std::span<const Category> c
 
 }  // namespace
 
+TraceLight traceLight(const Scene& scene, int band) {
+  TraceLight light{.sun = scene.sun(), .ground_albedo = scene.ground_albedo[band]};
+  for (const TreeKind& kind : scene.kinds)
+    light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
+  return light;
+}
+
 std::string kindOf(const Scene& scene) {
   if (scene.stand.period) return "periodic";
   return scene.stand.trees.size() == 1 ? "single tree" : std::to_string(scene.stand.trees.size()) + " trees";
@@ -58,18 +65,14 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
   result.depths = meanDepths(geometry);
   result.mean_depth = mean(result.depths.depth);
   result.mean_thickness = mean(result.depths.thickness);
-  result.leaf_area = leafArea(*scene.tree);
+  result.leaf_area = leafArea(*scene.kinds[0].mesh);
 
-  const RayScene rays(*scene.tree, scene.stand, effort.with_wood);
-  const TraceLight light{.sun = scene.sun(),
-                         .leaf = result.optics(),
-                         .wood_reflectance = scene.wood_reflectance[band],
-                         .ground_albedo = 0.f};
-  result.reference = traceForward(rays, *scene.tree, light, effort.trace, progress);
+  const RayScene rays(meshes(scene), scene.stand, effort.with_wood);
+  result.reference = traceForward(rays, traceLight(scene, band), effort.trace, progress);
   result.reference_noise = referenceNoise(result.reference.leaf_irradiance, result.reference.leaf_standard_error);
 
   result.categories = categories(result.depths);
-  result.leaves_left_out = scene.tree->leaf_count;
+  result.leaves_left_out = scene.kinds[0].mesh->leaf_count;
   for (const Category& category : result.categories) result.leaves_left_out -= category.leaves.size();
   result.category_noise = categoryNoise(result.reference, result.categories);
 

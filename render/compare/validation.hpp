@@ -40,8 +40,11 @@ struct Validation {
   std::size_t leaves_left_out = 0;  // in categories of fewer than 5
   std::vector<ModelResult> models;
 
-  LeafOptics optics() const { return scene.leaf[static_cast<std::size_t>(effort.band)]; }
+  LeafOptics optics() const { return scene.kinds[0].leaf[static_cast<std::size_t>(effort.band)]; }
 };
+
+// The scene's sun, leaves, wood and ground in one band, for Monte Carlo.
+TraceLight traceLight(const Scene& scene, int band);
 
 std::string kindOf(const Scene& scene);  // "single tree", "16 trees" or "periodic"
 std::string labelOf(Model model);        // "SS", "SPP", "SPPG"

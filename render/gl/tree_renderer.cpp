@@ -44,7 +44,7 @@ std::vector<VertexData> verticesOf(const TreeMesh& mesh) {
 // At the lowest point of the stand, three crown radii beyond its middle and as far again as the stand is wide.
 GroundDisc groundOf(const Scene& scene) {
   const Bounds stand = bounds(scene);
-  const glm::vec3 crown = 0.5f * bounds(*scene.tree).size(), whole = 0.5f * stand.size();
+  const glm::vec3 crown = 0.5f * bounds(*scene.kinds[0].mesh).size(), whole = 0.5f * stand.size();
   const float crown_radius = std::max(crown.x, crown.y);
   return {.centre = {stand.centre().x, stand.centre().y, stand.low.z},
           .radius = std::max(whole.x, whole.y) + (kGroundRadii - 1.f) * crown_radius};
@@ -152,7 +152,7 @@ struct TreeRenderer::Resources {
       : context(&current),
         ground(groundOf(scene)),
         has_ground(anyAbove(scene.ground_albedo, 0.f)),
-        stand(standInstances(scene.stand, periodsAround(scene.stand, leafBounds(*scene.tree)), sun, ground)),
+        stand(standInstances(scene.stand, periodsAround(scene.stand, leafBounds(*scene.kinds[0].mesh)), sun, ground)),
         vertex_count(static_cast<GLsizei>(corners.size())),
         vertices(corners),
         instances(instanceData(stand)),
@@ -170,7 +170,7 @@ struct TreeRenderer::Resources {
             {shaderOf(Stage::vertex, "render/gl/tree.vert"), shaderOf(Stage::fragment, "render/gl/tree.frag")}),
         ground_program(
             {shaderOf(Stage::vertex, "render/gl/ground.vert"), shaderOf(Stage::fragment, "render/gl/ground.frag")}) {
-    const Bounds prototype = bounds(*scene.tree);
+    const Bounds prototype = bounds(*scene.kinds[0].mesh);
     for (const Instance& instance : stand.drawn) {
       box.include(prototype.low + instance.position);
       box.include(prototype.high + instance.position);
@@ -182,10 +182,10 @@ struct TreeRenderer::Resources {
     frame.cell_low = glm::vec4(cells.low, cells.cell_size);
     frame.cell_count = glm::vec4(glm::max(glm::vec3(cells.size), glm::vec3(1.f)), static_cast<float>(blocks.across));
     for (int band = 0; band < kBands; ++band) {
-      frame.leaf_reflectance[band] = scene.leaf[static_cast<std::size_t>(band)].reflectance;
-      frame.leaf_transmittance[band] = scene.leaf[static_cast<std::size_t>(band)].transmittance;
+      frame.leaf_reflectance[band] = scene.kinds[0].leaf[static_cast<std::size_t>(band)].reflectance;
+      frame.leaf_transmittance[band] = scene.kinds[0].leaf[static_cast<std::size_t>(band)].transmittance;
     }
-    frame.wood_reflectance = glm::vec4(scene.wood_reflectance, 0.f);
+    frame.wood_reflectance = glm::vec4(scene.kinds[0].wood_reflectance, 0.f);
     frame.ground_albedo = glm::vec4(scene.ground_albedo, 0.f);
     frame.ground = glm::vec4(ground.centre, ground.radius);
     frame.choice.y = static_cast<std::uint32_t>(stand.drawn.size());
@@ -224,7 +224,7 @@ struct TreeRenderer::Resources {
 
 TreeRenderer::TreeRenderer(const Context& context, const Scene& scene, const SunMap& sun,
                            const CompensationCells& cells)
-    : resources_(std::make_unique<Resources>(context, scene, sun, cells, verticesOf(*scene.tree))) {}
+    : resources_(std::make_unique<Resources>(context, scene, sun, cells, verticesOf(*scene.kinds[0].mesh))) {}
 TreeRenderer::~TreeRenderer() = default;
 TreeRenderer::TreeRenderer(TreeRenderer&&) noexcept = default;
 TreeRenderer& TreeRenderer::operator=(TreeRenderer&&) noexcept = default;

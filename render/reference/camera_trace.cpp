@@ -69,7 +69,7 @@ class EyePaths {
         hit.position.z = ground_;
         hit.normal = {0.f, 0.f, 1.f};
       }
-      const Shares shares = sharesOf(hit.surface);
+      const Shares shares = sharesOf(hit);
       radiance += weight * fromSun(hit, shares);
       const float albedo = shares.reflected + shares.passed;
       if (!scatters(double{albedo}, weight, absorbed, random)) break;
@@ -93,9 +93,11 @@ class EyePaths {
   struct Shares {
     float reflected, passed;  // of the arriving light [1]
   };
-  Shares sharesOf(Surface surface) const {
-    if (surface == Surface::leaf) return {light_.leaf.reflectance, light_.leaf.transmittance};
-    return {surface == Surface::wood ? light_.wood_reflectance : light_.ground_albedo, 0.f};
+  Shares sharesOf(const Hit& hit) const {
+    if (hit.surface == Surface::none) return {light_.ground_albedo, 0.f};
+    const TreeOptics tree = light_.ofKind(hit.kind);
+    if (hit.surface == Surface::wood) return {tree.wood_reflectance, 0.f};
+    return {tree.leaf.reflectance, tree.leaf.transmittance};
   }
 
   // Distance to the ground along a ray, infinite if it meets none.
@@ -162,7 +164,7 @@ CameraResult resultOf(const std::vector<PixelSum>& sums, const PixelRays& rays, 
 
 CameraResult traceCamera(const RayScene& scene, const TraceLight& light, const PixelRays& rays, float ground_height,
                          const TraceEffort& effort, const Progress& progress) {
-  validate(light);
+  requireFitting(light, scene);
   validate(effort);
   validate(rays);
   require(std::isfinite(ground_height), "ground height", ground_height, "finite");

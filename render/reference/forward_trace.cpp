@@ -29,7 +29,7 @@ class BatchTracer {
   BatchTracer(const RayScene::Geometry& scene, const TraceLight& light, const SunlitFaces& faces, std::uint64_t seed,
               std::size_t batch)
       : scene_(scene), light_(light), faces_(faces), random_(seed, batch) {
-    tally_.leaf.assign(scene.leaf_count, 0.);
+    tally_.leaf.assign(scene.leaf_area.size(), 0.);
   }
 
   Tally trace(std::uint64_t paths, const Stopped& stopped) {
@@ -55,7 +55,7 @@ class BatchTracer {
         absorbed += weight;
         return;
       }
-      if (!scatters(albedo(hit.surface), weight, absorbed, random_)) return;
+      if (!scatters(albedo(hit), weight, absorbed, random_)) return;
       leave(hit, from, direction);
     }
   }
@@ -71,9 +71,10 @@ class BatchTracer {
     return tally_.absorbed_ground;
   }
 
-  double albedo(Surface surface) const {
-    if (surface == Surface::wood) return double{light_.wood_reflectance};
-    return surface == Surface::leaf ? double{light_.leaf.albedo()} : double{light_.ground_albedo};
+  double albedo(const Hit& hit) const {
+    if (hit.surface == Surface::none) return double{light_.ground_albedo};
+    const TreeOptics tree = light_.ofKind(hit.kind);
+    return hit.surface == Surface::wood ? double{tree.wood_reflectance} : double{tree.leaf.albedo()};
   }
 
   void leave(const Hit& hit, glm::vec3& from, glm::vec3& direction) {
@@ -83,8 +84,8 @@ class BatchTracer {
       direction = lambertDirection({0.f, 0.f, 1.f}, random_);
       return;
     }
-    const bool passes =
-        hit.surface == Surface::leaf && random_.uniform() * light_.leaf.albedo() >= light_.leaf.reflectance;
+    const LeafOptics optics = light_.ofKind(hit.kind).leaf;
+    const bool passes = hit.surface == Surface::leaf && random_.uniform() * optics.albedo() >= optics.reflectance;
     const glm::vec3 side = passes ? -hit.normal : hit.normal;
     from = scene_.leave(hit.position, side);
     direction = lambertDirection(side, random_);
@@ -139,9 +140,9 @@ class ForwardMeans {
   std::vector<BatchMean> leaf_;
 };
 
-std::vector<double> fluxPerArea(const RayScene::Geometry& scene, const TreeMesh& mesh, double flux) {
-  std::vector<double> result = leafAreas(mesh);
-  for (double& value : result) value = flux / (value * static_cast<double>(scene.trees));
+std::vector<double> fluxPerArea(const RayScene::Geometry& scene, double flux) {
+  std::vector<double> result = scene.leaf_area;
+  for (double& value : result) value = flux / value;
   return result;
 }
 
@@ -151,9 +152,13 @@ void validate(const TraceLight& light) {
   const double length = glm::length(glm::dvec3(light.sun));
   require(std::abs(length - 1.) < 1e-4, "length of the sun's direction", length, "1");
   require(light.sun.z < 0.f, "z of the sun's direction", light.sun.z, "below 0: sunlight travels down");
-  validate(light.leaf);
-  require(light.wood_reflectance >= 0.f && light.wood_reflectance <= 1.f, "wood reflectance", light.wood_reflectance,
-          "in [0, 1]");
+  const auto validateTree = [](const TreeOptics& tree) {
+    validate(tree.leaf);
+    require(tree.wood_reflectance >= 0.f && tree.wood_reflectance <= 1.f, "wood reflectance", tree.wood_reflectance,
+            "in [0, 1]");
+  };
+  validateTree({light.leaf, light.wood_reflectance});
+  for (const TreeOptics& tree : light.of_kinds) validateTree(tree);
   require(light.ground_albedo >= 0.f && light.ground_albedo <= 1.f, "ground albedo", light.ground_albedo, "in [0, 1]");
 }
 
@@ -164,22 +169,27 @@ void validate(const TraceEffort& effort) {
           "from 0 (all cores) to 4096");
 }
 
-ForwardResult traceForward(const RayScene& scene, const TreeMesh& mesh, const TraceLight& light,
-                           const TraceEffort& effort, const Progress& progress) {
+void requireFitting(const TraceLight& light, const RayScene& scene) {
   validate(light);
+  const std::size_t kinds = scene.geometry().prototypes.size();
+  require(light.of_kinds.empty() || light.of_kinds.size() == kinds, "number of kinds of trees with optics",
+          light.of_kinds.size(), "that of the traced scene, " + std::to_string(kinds));
+}
+
+ForwardResult traceForward(const RayScene& scene, const TraceLight& light, const TraceEffort& effort,
+                           const Progress& progress) {
+  requireFitting(light, scene);
   validate(effort);
   const RayScene::Geometry& geometry = scene.geometry();
   require(geometry.period || light.ground_albedo == 0.f, "ground albedo", light.ground_albedo,
           "0 in a forward trace of a stand without period");
-  require(mesh.leaf_count == geometry.leaf_count, "number of leaves of the mesh", mesh.leaf_count,
-          "that of the traced scene, " + std::to_string(geometry.leaf_count));
 
   const Stopwatch stopwatch;
   const SunlitFaces faces(geometry, light.sun);
   const auto parts = [&](std::uint64_t size) { return (effort.paths + size - 1) / size; };
   const std::uint64_t batches = std::max<std::uint64_t>(kTraceBatches, parts(kMostBatchPaths));
   const std::uint64_t per_batch = parts(batches);
-  ForwardMeans means(fluxPerArea(geometry, mesh, faces.flux()));
+  ForwardMeans means(fluxPerArea(geometry, faces.flux()));
   std::uint64_t paths = 0;
   inOrder(
       batches, effort.threads,

@@ -10,12 +10,23 @@
 
 namespace sunfleck {
 
+// What a kind of tree does to light of one band.
+struct TreeOptics {
+  LeafOptics leaf{};
+  float wood_reflectance = 0.3f;  // Lambertian [1], 0 .. 1
+};
+
 // One band of light and the sun that sends it.
 struct TraceLight {
   Direction sun{0.f, 0.f, -1.f};  // direction of travel; z < 0
   LeafOptics leaf{};
-  float wood_reflectance = 0.3f;  // Lambertian [1], 0 .. 1
-  float ground_albedo = 0.f;      // Lambertian [1], 0 .. 1
+  float wood_reflectance = 0.3f;       // Lambertian [1], 0 .. 1
+  float ground_albedo = 0.f;           // Lambertian [1], 0 .. 1
+  std::vector<TreeOptics> of_kinds{};  // of each kind of tree; none: all have the optics above
+
+  TreeOptics ofKind(std::uint32_t kind) const {
+    return of_kinds.empty() ? TreeOptics{leaf, wood_reflectance} : of_kinds[kind];
+  }
 };
 
 // Paths are traced in batches of equal size, whose spread gives the standard errors: this many, or more where a batch
@@ -32,6 +43,7 @@ struct TraceEffort {
 // Throw InvalidInput on a value out of its range, a sun that does not shine down or is no unit vector.
 void validate(const TraceLight& light);
 void validate(const TraceEffort& effort);
+void requireFitting(const TraceLight& light, const RayScene& scene);  // validates, and demands optics of each kind
 
 // A mean and its standard error, from the spread of independent parts. Where there is one part alone, nothing is known
 // of the spread: the standard error is then the value itself.
@@ -50,8 +62,8 @@ struct ForwardResult {
   Estimate arriving_ground;         // every arrival counted, also after reflection by the ground itself
   Estimate arriving_ground_direct;  // of these, the light that met nothing before
   Estimate absorbed_ground;
-  // Of each leaf of the prototype, both sides together per one-sided area, for sun irradiance 1 on a plane facing the
-  // sun; the mean over the stand's copies.
+  // Of each leaf of the prototypes, kind after kind: both sides together per one-sided area, for sun irradiance 1 on a
+  // plane facing the sun; the mean over the stand's trees of the kind.
   std::vector<double> leaf_irradiance;      // E [1]
   std::vector<double> leaf_standard_error;  // of E, from batches [1]
   std::uint64_t paths = 0;                  // traced; fewer than asked for when ended early
@@ -62,10 +74,9 @@ struct ForwardResult {
 // (R1) Monte Carlo from the sun to the leaves. Leaves scatter by Lambert's law on both sides, wood and ground on one.
 // The ground lies at the bottom of the box. When `progress` ends it early, the batches done until then are the result,
 // at least one.
-//   mesh  the one `scene` was made of
-// Throws InvalidInput on invalid light or effort, and on a ground that reflects under a stand without period: where
-// that light would go cannot be told from the box alone (traceCamera takes any).
-ForwardResult traceForward(const RayScene& scene, const TreeMesh& mesh, const TraceLight& light,
-                           const TraceEffort& effort, const Progress& progress = {});
+// Throws InvalidInput on invalid light or effort, light for another number of kinds, and on a ground that reflects
+// under a stand without period: where that light would go cannot be told from the box alone (traceCamera takes any).
+ForwardResult traceForward(const RayScene& scene, const TraceLight& light, const TraceEffort& effort,
+                           const Progress& progress = {});
 
 }  // namespace sunfleck

@@ -1,6 +1,7 @@
 #include "render/reference/ray_scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -93,9 +94,8 @@ float largestCoordinate(const Bounds& box) {
 
 }  // namespace
 
-RayScene::Geometry::Geometry(const TreeMesh& mesh, const Stand& stand, bool with_wood)
-    : leaf_of_triangle(mesh.leaf_of_triangle), leaf_count(mesh.leaf_count), trees(stand.trees.size()) {
-  StandCopies placed = standCopies(mesh, stand, with_wood);
+RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood) {
+  StandCopies placed = standCopies(kinds, stand, with_wood);
   origin = placed.origin;
   copies = std::move(placed.copies);
   period = stand.period;
@@ -103,7 +103,7 @@ RayScene::Geometry::Geometry(const TreeMesh& mesh, const Stand& stand, bool with
   box = {.low = stand_box.low - origin, .high = stand_box.high - origin};
   // A periodic stand's trees may be larger than its period, and their vertices are as exact as their size allows.
   Bounds coordinates = box;
-  coordinates.include(bounds(mesh));
+  for (const TreeMesh* mesh : kinds) coordinates.include(bounds(*mesh));
   lift = 8.f * std::numeric_limits<float>::epsilon() * largestCoordinate(coordinates);
   low = box.low.z - 4.f * lift;
   high = box.high.z + 4.f * lift;
@@ -112,25 +112,37 @@ RayScene::Geometry::Geometry(const TreeMesh& mesh, const Stand& stand, bool with
   if (!device) throw std::runtime_error("Embree error " + std::to_string(rtcGetDeviceError(nullptr)));
   rtcSetDeviceErrorFunction(device.get(), keepFirstError, &embree_error);
 
-  EmbreeScene prototype(rtcNewScene(device.get()));
-  attachTriangles(device.get(), prototype.get(), kLeaves, mesh.vertices, mesh.leaf_triangles);
-  for (const glm::uvec3& t : mesh.leaf_triangles) planes.push_back(planeOf(mesh, t));
-  if (with_wood && !mesh.wood_triangles.empty()) {
-    attachTriangles(device.get(), prototype.get(), kWood, mesh.vertices, mesh.wood_triangles);
-    for (const glm::uvec3& t : mesh.wood_triangles) planes.push_back(planeOf(mesh, t));
+  std::vector<double> trees(kinds.size());
+  for (const Placement& tree : stand.trees) trees[tree.kind] += 1.;
+  std::vector<EmbreeScene> made;
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    const TreeMesh& mesh = *kinds[kind];
+    EmbreeScene& scene = made.emplace_back(rtcNewScene(device.get()));
+    Prototype& prototype = prototypes.emplace_back();
+    attachTriangles(device.get(), scene.get(), kLeaves, mesh.vertices, mesh.leaf_triangles);
+    for (const glm::uvec3& t : mesh.leaf_triangles) prototype.planes.push_back(planeOf(mesh, t));
+    if (with_wood && !mesh.wood_triangles.empty()) {
+      attachTriangles(device.get(), scene.get(), kWood, mesh.vertices, mesh.wood_triangles);
+      for (const glm::uvec3& t : mesh.wood_triangles) prototype.planes.push_back(planeOf(mesh, t));
+    }
+    for (const std::uint32_t leaf : mesh.leaf_of_triangle)
+      prototype.leaf_of_triangle.push_back(static_cast<std::uint32_t>(leaf_area.size()) + leaf);
+    for (const double area : leafAreas(mesh)) leaf_area.push_back(area * trees[kind]);
   }
   checkEmbree();
-  scenes = commit(std::move(prototype), RTC_SCENE_FLAG_NONE);
+  scenes = commit(std::move(made), RTC_SCENE_FLAG_NONE);
 }
 
 void RayScene::Geometry::checkEmbree() const {
   if (!embree_error.empty()) throw std::runtime_error(embree_error);
 }
 
-Scenes RayScene::Geometry::commit(EmbreeScene prototype, RTCSceneFlags flags) const {
-  Scenes made{.prototype = std::move(prototype), .instances = nullptr};
-  rtcSetSceneFlags(made.prototype.get(), flags);
-  rtcCommitScene(made.prototype.get());
+Scenes RayScene::Geometry::commit(std::vector<EmbreeScene> of_kinds, RTCSceneFlags flags) const {
+  Scenes made{.prototypes = std::move(of_kinds), .instances = nullptr};
+  for (const EmbreeScene& prototype : made.prototypes) {
+    rtcSetSceneFlags(prototype.get(), flags);
+    rtcCommitScene(prototype.get());
+  }
   const Copy& first = copies.front();
   const bool alone =
       copies.size() == 1 && first.translation == glm::vec3(0.f) && first.sine == 0.f && first.cosine > 0.f;
@@ -138,7 +150,8 @@ Scenes RayScene::Geometry::commit(EmbreeScene prototype, RTCSceneFlags flags) co
     made.instances.reset(rtcNewScene(device.get()));
     rtcSetSceneFlags(made.instances.get(), flags);
     for (std::size_t i = 0; i < copies.size(); ++i)
-      attachInstance(device.get(), made.instances.get(), static_cast<unsigned>(i), made.prototype.get(), copies[i]);
+      attachInstance(device.get(), made.instances.get(), static_cast<unsigned>(i),
+                     made.prototypes[copies[i].kind].get(), copies[i]);
     rtcCommitScene(made.instances.get());
   }
   checkEmbree();
@@ -147,8 +160,10 @@ Scenes RayScene::Geometry::commit(EmbreeScene prototype, RTCSceneFlags flags) co
 
 RTCScene RayScene::Geometry::countingScene() const {
   std::call_once(counting_made, [&] {
-    EmbreeScene leaves(rtcNewScene(device.get()));
-    rtcAttachGeometryByID(leaves.get(), rtcGetGeometry(scenes.prototype.get(), kLeaves), kLeaves);
+    std::vector<EmbreeScene> leaves;
+    for (const EmbreeScene& prototype : scenes.prototypes)
+      rtcAttachGeometryByID(leaves.emplace_back(rtcNewScene(device.get())).get(),
+                            rtcGetGeometry(prototype.get(), kLeaves), kLeaves);
     counting = commit(std::move(leaves), RTC_SCENE_FLAG_ROBUST | kFilterPerCall);
   });
   return counting.root();
@@ -159,16 +174,19 @@ Hit RayScene::Geometry::describe(const RTCRayHit& ray) const {
   const bool leaf = ray.hit.geomID == kLeaves;
   const glm::vec3 direction(ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z);
   const glm::vec3 travelled = glm::vec3(ray.ray.org_x, ray.ray.org_y, ray.ray.org_z) + ray.ray.tfar * direction;
-  const glm::vec4& plane = planes[ray.hit.primID + (leaf ? 0 : leaf_of_triangle.size())];
+  const bool alone = ray.hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
+  const Copy& copy = copies[alone ? 0 : ray.hit.instID[0]];
+  const Prototype& prototype = prototypes[copy.kind];
+  const glm::vec4& plane = prototype.planes[ray.hit.primID + (leaf ? 0 : prototype.leaf_of_triangle.size())];
   glm::vec3 normal(plane);
   float distance = plane.w;
-  if (ray.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
-    const Copy& copy = copies[ray.hit.instID[0]];
+  if (!alone) {
     normal = copy.rotated(normal);
     distance += glm::dot(normal, copy.translation);
   }
   return {.surface = leaf ? Surface::leaf : Surface::wood,
-          .leaf = leaf ? leaf_of_triangle[ray.hit.primID] : 0,
+          .kind = copy.kind,
+          .leaf = leaf ? prototype.leaf_of_triangle[ray.hit.primID] : 0,
           .position = travelled - (glm::dot(normal, travelled) - distance) * normal,
           .normal = glm::dot(normal, direction) > 0.f ? -normal : normal};
 }
@@ -271,16 +289,21 @@ struct Counting {
 void noteAndReject(const RTCFilterFunctionNArguments* arguments) {
   const Counting& counting = *reinterpret_cast<const Counting*>(arguments->context);
   const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
-  counting.crossings->push_back({RTCRayN_tfar(arguments->ray, arguments->N, 0),
-                                 RTCHitN_instID(arguments->hit, arguments->N, 0, 0),
-                                 counting.scene->leaf_of_triangle[triangle]});
+  const unsigned instance = RTCHitN_instID(arguments->hit, arguments->N, 0, 0);
+  const Copy& copy = counting.scene->copies[instance == RTC_INVALID_GEOMETRY_ID ? 0 : instance];
+  counting.crossings->push_back({RTCRayN_tfar(arguments->ray, arguments->N, 0), instance,
+                                 counting.scene->prototypes[copy.kind].leaf_of_triangle[triangle]});
   arguments->valid[0] = 0;
 }
 
 }  // namespace
 
+RayScene::RayScene(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood)
+    : geometry_(std::make_unique<Geometry>(kinds, stand, with_wood)) {}
+
 RayScene::RayScene(const TreeMesh& mesh, const Stand& stand, bool with_wood)
-    : geometry_(std::make_unique<Geometry>(mesh, stand, with_wood)) {}
+    : RayScene(std::array{&mesh}, stand, with_wood) {}
+
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;

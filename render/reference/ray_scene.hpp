@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 
 #include "core/bounds.hpp"
 #include "core/stand.hpp"
@@ -10,13 +11,15 @@
 
 namespace sunfleck {
 
-// A stand of trees that Embree traces rays through. Copies share the geometry; threads share a RayScene.
+// A stand of trees that Embree traces rays through. Trees of a kind share its geometry; threads share a RayScene.
 class RayScene {
  public:
-  // `with_wood`: whether wood stops light; without it the leaves stand alone.
-  // Throws InvalidInput on a stand without trees, a placement or period that is not finite, a period <= 0 or one so
-  // small that more than a million copies of the tree reach into it.
-  RayScene(const TreeMesh& mesh, const Stand& stand, bool with_wood);
+  //   kinds      prototypes of the kinds of trees; of each stands one at least. Leaves are numbered through all of them
+  //   with_wood  whether wood stops light; without it the leaves stand alone
+  // Throws InvalidInput on a stand without trees, a kind without trees, a placement or period that is not finite, a
+  // period <= 0 or one so small that more than a million copies of the trees reach into it.
+  RayScene(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood);
+  RayScene(const TreeMesh& mesh, const Stand& stand, bool with_wood);  // trees of one kind
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;

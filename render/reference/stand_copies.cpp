@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kMostCopies = 1e6;
 
-void validate(const Stand& stand) {
+void validate(std::size_t kinds, const Stand& stand) {
+  std::vector<char> stands(kinds);
   require(!stand.trees.empty(), "Stand.trees", stand.trees.size(), "at least one tree");
   for (std::size_t i = 0; i < stand.trees.size(); ++i) {
     const std::string name = "Stand.trees[" + std::to_string(i) + "]";
@@ -18,7 +19,12 @@ void validate(const Stand& stand) {
       require(std::abs(stand.trees[i].position[axis]) <= 1e6f, name + ".position", stand.trees[i].position[axis],
               "finite and at most 1e6 m in size");
     require(std::isfinite(stand.trees[i].rotation), name + ".rotation", stand.trees[i].rotation, "finite");
+    require(stand.trees[i].kind < kinds, name + ".kind", stand.trees[i].kind,
+            "below the number of kinds, " + std::to_string(kinds));
+    stands[stand.trees[i].kind] = true;
   }
+  for (std::size_t kind = 0; kind < kinds; ++kind)
+    require(stands[kind], "Stand.trees: number of those of kind " + std::to_string(kind), 0, "at least 1");
   if (!stand.period) return;
   for (int axis = 0; axis < 2; ++axis)
     require((*stand.period)[axis] > 0.f && (*stand.period)[axis] <= 1e6f, "Stand.period", (*stand.period)[axis],
@@ -26,8 +32,9 @@ void validate(const Stand& stand) {
 }
 
 Copy rotation(const Placement& tree) {
-  if (tree.rotation == 0.f) return {};
-  return {.cosine = static_cast<float>(std::cos(double{tree.rotation})),
+  if (tree.rotation == 0.f) return {.kind = tree.kind};
+  return {.kind = tree.kind,
+          .cosine = static_cast<float>(std::cos(double{tree.rotation})),
           .sine = static_cast<float>(std::sin(double{tree.rotation}))};
 }
 
@@ -55,14 +62,14 @@ Shifts shifts(float low, float high, float cell_low, float period) {
 
 }  // namespace
 
-StandCopies standCopies(const TreeMesh& mesh, const Stand& stand, bool with_wood) {
-  validate(stand);
+StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood) {
+  validate(kinds.size(), stand);
   std::vector<Copy> rotations;
   std::vector<Bounds> boxes;  // of each tree, where it stands
   Bounds whole;
   for (const Placement& tree : stand.trees) {
     rotations.push_back(rotation(tree));
-    const Bounds box = rotatedBox(mesh, rotations.back(), with_wood);
+    const Bounds box = rotatedBox(*kinds[tree.kind], rotations.back(), with_wood);
     boxes.push_back({.low = box.low + tree.position, .high = box.high + tree.position});
     whole.include(boxes.back());
   }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -24,7 +25,8 @@ enum class Surface { none, leaf, wood };
 // What a ray meets first.
 struct Hit {
   Surface surface = Surface::none;
-  std::uint32_t leaf = 0;   // of the prototype; when a leaf
+  std::uint32_t kind = 0;   // of the tree
+  std::uint32_t leaf = 0;   // when a leaf: among those of all kinds, one kind after the other
   glm::vec3 position{0.f};  // on the surface; in a periodic stand inside the traced period [m]
   glm::vec3 normal{0.f};    // unit, geometric, on the side the ray came from
 };
@@ -38,10 +40,17 @@ struct ReleaseScene {
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-// The prototype's triangles, and the stand of instances of it unless it stands alone.
+// The prototypes' triangles, and the stand of instances of them unless one stands alone.
 struct Scenes {
-  EmbreeScene prototype, instances;
-  RTCScene root() const { return instances ? instances.get() : prototype.get(); }
+  std::vector<EmbreeScene> prototypes;  // of each kind
+  EmbreeScene instances;
+  RTCScene root() const { return instances ? instances.get() : prototypes.front().get(); }
+};
+
+// What a hit on a kind of tree is looked up in.
+struct Prototype {
+  std::vector<glm::vec4> planes;                // per triangle, leaves first: unit normal n, and n . x on it [m]
+  std::vector<std::uint32_t> leaf_of_triangle;  // among the leaves of all kinds
 };
 
 // A ray that would pass more periods than this without meeting anything is taken to leave the layer of leaves by the
@@ -52,7 +61,7 @@ inline constexpr int kMostPeriods = 10'000;
 
 // Embree's view of a stand. All positions are relative to `origin`.
 struct RayScene::Geometry {
-  Geometry(const TreeMesh& mesh, const Stand& stand, bool with_wood);
+  Geometry(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood);
 
   // First surface on the way from `from` along the unit vector `direction`, no farther than `reach` [m], which counts
   // in stands without period alone.
@@ -78,12 +87,11 @@ struct RayScene::Geometry {
   mutable detail::Scenes counting;
   mutable std::once_flag counting_made;
 
-  glm::vec3 origin{0.f};             // of all other coordinates here, in the stand's [m]
-  std::vector<detail::Copy> copies;  // by Embree's instance number
-  std::vector<glm::vec4> planes;     // per triangle of the prototype, leaves first: unit normal n, and n . x on it [m]
-  std::vector<std::uint32_t> leaf_of_triangle;
-  std::uint32_t leaf_count = 0;
-  std::size_t trees = 0;            // placements, without their periodic copies
+  glm::vec3 origin{0.f};                      // of all other coordinates here, in the stand's [m]
+  std::vector<detail::Copy> copies;           // by Embree's instance number
+  std::vector<detail::Prototype> prototypes;  // of each kind
+  std::vector<double>
+      leaf_area;  // of each leaf of all kinds, summed over the trees without their periodic copies [m^2]
   std::optional<glm::vec2> period;  // [m]
   Bounds stand_box;                 // what RayScene::box tells, in the stand's coordinates
   Bounds box;                       // the same about `origin`
@@ -92,7 +100,7 @@ struct RayScene::Geometry {
 
  private:
   void checkEmbree() const;  // throws std::runtime_error if Embree has reported an error
-  detail::Scenes commit(detail::EmbreeScene prototype, RTCSceneFlags flags) const;
+  detail::Scenes commit(std::vector<detail::EmbreeScene> made, RTCSceneFlags flags) const;
   detail::Hit describe(const RTCRayHit& ray) const;
   detail::Hit closestInPeriods(glm::vec3 point, const glm::vec3& direction, detail::Coherence coherence) const;
   bool blockedInPeriods(glm::vec3 point, const glm::vec3& direction) const;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/bounds.hpp"
@@ -11,8 +13,9 @@
 
 namespace sunfleck::detail {
 
-// A copy of the prototype: rotated about z, then moved.
+// A copy of a prototype: rotated about z, then moved.
 struct Copy {
+  std::uint32_t kind = 0;
   glm::vec3 translation{0.f};      // [m]
   float cosine = 1.f, sine = 0.f;  // of the rotation
 
@@ -29,6 +32,6 @@ struct StandCopies {
 
 // The placements and, in a periodic stand, their copies shifted by whole periods as far as they reach into the period
 // around the stand's middle. Throws InvalidInput as RayScene's constructor does.
-StandCopies standCopies(const TreeMesh& mesh, const Stand& stand, bool with_wood);
+StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood);
 
 }  // namespace sunfleck::detail
