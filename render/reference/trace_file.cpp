@@ -1,5 +1,6 @@
 #include "render/reference/trace_file.hpp"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -154,14 +155,17 @@ TraceSections readTraceFile(const fs::path& path) {
 }
 
 void requireSame(const fs::path& path, const TraceIdentity& found, const TraceIdentity& expected) {
-  for (const auto& [name, value] : expected) {
-    const auto at = found.find(name);
-    if (at == found.end() || at->second != value)
-      throw InvalidInput(path.string() + ": made with " + name + " = " + (at == found.end() ? "none" : at->second) +
-                         ": must be " + value);
-  }
-  for (const auto& [name, value] : found)
-    if (!expected.contains(name)) throw InvalidInput(path.string() + ": made with " + name + " = " + value + ": must be none");
+  const auto valueIn = [](const TraceIdentity& identity, const std::string& name) {
+    const auto at = identity.find(name);
+    return at == identity.end() ? std::string("none") : at->second;
+  };
+  const auto compare = [&](const std::string& name) {
+    const std::string is = valueIn(found, name), should = valueIn(expected, name);
+    if (is != should)
+      throw InvalidInput(fmt::format("{}: made with {} = {}: must be {}", path.string(), name, is, should));
+  };
+  for (const auto& [name, value] : expected) compare(name);
+  for (const auto& [name, value] : found) compare(name);
 }
 
 }  // namespace sunfleck

@@ -5,7 +5,9 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <exception>
 #include <mutex>
+#include <vector>
 
 namespace sunfleck {
 namespace {
@@ -29,23 +31,36 @@ class UnitQueue {
   std::size_t at_ = 0;
 };
 
+// When a unit throws, the others need not go on.
+struct StopOthers {
+  Stopped& stopped;
+  int exceptions = std::uncaught_exceptions();
+  ~StopOthers() {
+    if (std::uncaught_exceptions() > exceptions) stopped = true;
+  }
+};
+
 }  // namespace
 
-void runUnits(const TraceJob& job, const TraceUnits& units, TraceSums& sums, const UnitDone& unit_done) {
+void runUnits(const TraceJob& job, const TraceUnits& units, TraceSums& sums, const Progress& progress) {
   const std::vector<UnitRanges::Range> missing = sums.done(units.seed).missing(units.first, units.last);
-  std::uint64_t count = 0;
+  std::uint64_t count = 0, added = 0;
   for (const auto& [first, last] : missing) count += last - first;
+  const std::uint64_t before = units.last - units.first - count;
   UnitQueue queue(missing);
   Stopped stopped = false;
   std::mutex adding;
   const auto work = [&] {
     UnitTally tally(job.bins());
+    StopOthers stop_others{stopped};
     for (std::uint64_t unit; !stopped.load(std::memory_order_relaxed) && queue.take(unit); tally.clear()) {
       job.trace(units.seed, unit, tally, stopped);
       const std::scoped_lock lock(adding);
       if (stopped) return;
       sums.add(units.seed, unit, tally);
-      if (unit_done && !unit_done(sums)) stopped = true;
+      ++added;
+      const auto done = static_cast<double>(before + added) / static_cast<double>(before + count);
+      if (!goOn(progress, done)) stopped = true;
     }
   };
   const int cores = tbb::info::default_concurrency();
