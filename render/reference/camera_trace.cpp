@@ -7,7 +7,7 @@
 #include "core/require.hpp"
 #include "render/reference/detail/eye_paths.hpp"
 #include "render/reference/detail/identity_text.hpp"
-#include "render/reference/detail/stopwatch.hpp"
+#include "core/elapsed.hpp"
 #include "render/reference/trace_run.hpp"
 
 namespace sunfleck {
@@ -181,6 +181,39 @@ std::vector<CameraResult> CameraJob::results(const TraceSums& sums) const {
   return results;
 }
 
+// With v the sum over a tile's pixels of the variance that a unit leaves, n units of each tile leave sum v / n. For the
+// least work, n goes as sqrt(v).
+UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSums& sums) const {
+  const double pixels = double(parts_->rays.width) * double(parts_->rays.height);
+  std::vector<double> wanted(groups(), double{kLeastUnitsOfTile});
+  for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band) {
+    std::vector<double> deviation(groups());  // sqrt(v)
+    double deviations = 0., radiance = 0.;
+    for (std::uint64_t number = 0; number < groups(); ++number) {
+      const Tile tile = parts_->tile(number);
+      double variance = 0.;
+      for (int y = tile.top; y < tile.bottom; ++y)
+        for (int x = tile.left; x < tile.right; ++x)
+          variance += std::pow(sums.estimate(parts_->pixel(x, y, band), number).standard_error, 2);
+      deviation[number] = std::sqrt(variance * static_cast<double>(sums.units(number)));
+      deviations += deviation[number];
+      radiance += tile.pixels() * sums.estimate(parts_->tileMean(number, band), number).value;
+    }
+    const double allowed = std::pow(target * radiance / pixels, 2) * pixels;  // sum over pixels of squared errors
+    for (std::uint64_t number = 0; number < groups() && allowed > 0.; ++number)
+      wanted[number] = std::max(wanted[number], deviation[number] * deviations / allowed);
+  }
+  UnitRanges units;
+  for (std::uint64_t number = 0; number < groups(); ++number) {
+    const std::uint64_t done = sums.units(number);
+    // At most twice what there is, as what is known of the noise is noisy itself.
+    const double least = double{kLeastUnitsOfTile}, twice = std::max(least, 2. * static_cast<double>(done));
+    const auto goal = static_cast<std::uint64_t>(std::min({std::ceil(wanted[number]), twice, static_cast<double>(most)}));
+    for (std::uint64_t pass = done; pass < goal; ++pass) units.add(pass * groups() + number);
+  }
+  return units;
+}
+
 int samplesPerUnit(std::uint64_t samples) {
   return static_cast<int>(std::clamp<std::uint64_t>(std::bit_floor(samples / kLeastUnitsOfTile), 1, kMostSamplesPerUnit));
 }
@@ -189,16 +222,16 @@ std::vector<CameraResult> traceCameraBands(const RayScene& scene, const std::vec
                                       float ground_height, const TraceEffort& effort, const Progress& progress) {
   validate(effort);
   validate(rays);
-  const Stopwatch stopwatch;
+  const Elapsed elapsed;
   const std::uint64_t samples =
       unitsOf(effort.paths, static_cast<std::uint64_t>(rays.width) * static_cast<std::uint64_t>(rays.height));
   const CameraJob job(scene, bands, rays, ground_height, samplesPerUnit(samples));
   TraceSums sums(job.bins(), job.groups());
-  runUnits(job, {.seed = effort.seed, .last = job.unitsOf(samples), .threads = effort.threads}, sums, progress);
+  runUnits(job, {.seed = effort.seed, .wanted = {0, job.unitsOf(samples)}, .threads = effort.threads}, sums, progress);
   std::vector<CameraResult> results = job.results(sums);
   for (CameraResult& result : results) {
-    result.seconds = stopwatch.seconds();
-    result.cpu_seconds = stopwatch.cpuSeconds();
+    result.seconds = elapsed.seconds();
+    result.cpu_seconds = elapsed.cpuSeconds();
   }
   return results;
 }

@@ -1,5 +1,6 @@
 #include "render/reference/forward_trace.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/require.hpp"
@@ -8,7 +9,7 @@
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/detail/scene_optics.hpp"
-#include "render/reference/detail/stopwatch.hpp"
+#include "core/elapsed.hpp"
 #include "render/reference/detail/sunlit_faces.hpp"
 #include "render/reference/trace_run.hpp"
 
@@ -208,19 +209,28 @@ std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
   return results;
 }
 
+double ForwardJob::relativeError(const TraceSums& sums) const {
+  double error = 0.;
+  for (std::size_t bin = 0; bin < parts_->layout.direct(); ++bin) {
+    const Estimate share = sums.estimate(bin);
+    if (share.value >= 0.01) error = std::max(error, share.standard_error / share.value);
+  }
+  return error;
+}
+
 std::vector<ForwardResult> traceForwardBands(const RayScene& scene, const std::vector<TraceLight>& bands,
                                         const TraceEffort& effort, const Progress& progress) {
   validate(effort);
-  const Stopwatch stopwatch;
+  const Elapsed elapsed;
   const std::uint64_t per_unit = pathsPerUnit(effort.paths);
   const ForwardJob job(scene, bands, per_unit);
   TraceSums sums(job.bins(), job.groups());
-  runUnits(job, {.seed = effort.seed, .last = unitsOf(effort.paths, per_unit), .threads = effort.threads}, sums,
+  runUnits(job, {.seed = effort.seed, .wanted = {0, unitsOf(effort.paths, per_unit)}, .threads = effort.threads}, sums,
            progress);
   std::vector<ForwardResult> results = job.results(sums);
   for (ForwardResult& result : results) {
-    result.seconds = stopwatch.seconds();
-    result.cpu_seconds = stopwatch.cpuSeconds();
+    result.seconds = elapsed.seconds();
+    result.cpu_seconds = elapsed.cpuSeconds();
   }
   return results;
 }

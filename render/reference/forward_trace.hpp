@@ -53,6 +53,8 @@ class ForwardJob final : public TraceJob {
 
   std::uint64_t pathsPerUnit() const;
   std::vector<ForwardResult> results(const TraceSums& sums) const;  // of each band
+  // The largest standard error of a share of the light, relative to it; shares below 1 % are left out.
+  double relativeError(const TraceSums& sums) const;
 
  private:
   struct Parts;

@@ -8,7 +8,7 @@
 
 #include "core/require.hpp"
 #include "render/reference/detail/absorption.hpp"
-#include "render/reference/detail/stopwatch.hpp"
+#include "core/elapsed.hpp"
 #include "render/reference/trace_job.hpp"
 #include "render/reference/trace_run.hpp"
 
@@ -195,15 +195,15 @@ SlabTraceResult traceSlab(const TracedSlab& slab, const SlabMeasures& measures, 
                           const Progress& progress) {
   validate(slab, measures);
   validate(effort);
-  const Stopwatch stopwatch;
+  const Elapsed elapsed;
   const std::uint64_t per_unit = pathsPerUnit(effort.paths);
   const SlabJob job(slab, measures, per_unit);
   TraceSums sums(job.bins(), job.groups());
-  runUnits(job, {.seed = effort.seed, .last = unitsOf(effort.paths, per_unit), .threads = effort.threads}, sums,
+  runUnits(job, {.seed = effort.seed, .wanted = {0, unitsOf(effort.paths, per_unit)}, .threads = effort.threads}, sums,
            progress);
   SlabTraceResult result = job.result(sums);
-  result.seconds = stopwatch.seconds();
-  result.cpu_seconds = stopwatch.cpuSeconds();
+  result.seconds = elapsed.seconds();
+  result.cpu_seconds = elapsed.cpuSeconds();
   return result;
 }
 

@@ -83,7 +83,8 @@ Json headerOf(const TraceSections& sections) {
                       {"identity", section.identity},
                       {"bins", section.sums.bins()},
                       {"groups", section.sums.groups()},
-                      {"done", done}});
+                      {"done", done},
+                      {"planned", section.planned.ranges()}});
   }
   return header;
 }
@@ -98,14 +99,17 @@ TraceSection readSection(const Json& header, Reader& body, const fs::path& path)
   TraceSection section{.name = header.at("name").get<std::string>(),
                        .identity = header.at("identity").get<TraceIdentity>(),
                        .sums = TraceSums(bins, groups)};
-  for (const Json& of_seed : header.at("done")) {
+  const auto unitsIn = [&](const Json& ranges) {
     UnitRanges units;
-    for (const auto& [first, last] : of_seed.at("units").get<std::vector<UnitRanges::Range>>()) {
-      damaged(first >= last || units.missing(first, last) != std::vector{UnitRanges::Range{first, last}});
+    for (const auto& [first, last] : ranges.get<std::vector<UnitRanges::Range>>()) {
+      damaged(first >= last || units.overlap({first, last}) != UnitRanges::Range{0, 0});
       units.add(first, last);
     }
-    section.sums.restore(of_seed.at("seed").get<std::uint64_t>(), std::move(units));
-  }
+    return units;
+  };
+  section.planned = unitsIn(header.at("planned"));
+  for (const Json& of_seed : header.at("done"))
+    section.sums.restore(of_seed.at("seed").get<std::uint64_t>(), unitsIn(of_seed.at("units")));
   for (std::uint64_t first = 0; (first = body.get<std::uint64_t>()) != std::numeric_limits<std::uint64_t>::max();) {
     const auto count = body.get<std::uint64_t>();
     damaged(first >= bins || count > bins - first);

@@ -14,6 +14,9 @@ struct TraceSection {
   std::string name;  // "forward", "picture", ...
   TraceIdentity identity;
   TraceSums sums;
+  // What the run was about to compute when the file was written: decisions that rest on what had been found by then are
+  // not made anew, so that an interrupted run goes the same way as one that was not.
+  UnitRanges planned{};
 };
 
 using TraceSections = std::deque<TraceSection>;  // a section stays where it is when others are added

@@ -43,11 +43,10 @@ struct StopOthers {
 }  // namespace
 
 void runUnits(const TraceJob& job, const TraceUnits& units, TraceSums& sums, const Progress& progress) {
-  const std::vector<UnitRanges::Range> missing = sums.done(units.seed).missing(units.first, units.last);
-  std::uint64_t count = 0, added = 0;
-  for (const auto& [first, last] : missing) count += last - first;
-  const std::uint64_t before = units.last - units.first - count;
-  UnitQueue queue(missing);
+  const UnitRanges missing = units.wanted.without(sums.done(units.seed));
+  const std::uint64_t wanted = units.wanted.count(), count = missing.count();
+  std::uint64_t added = 0;
+  UnitQueue queue(missing.ranges());
   Stopped stopped = false;
   std::mutex adding;
   const auto work = [&] {
@@ -59,7 +58,7 @@ void runUnits(const TraceJob& job, const TraceUnits& units, TraceSums& sums, con
       if (stopped) return;
       sums.add(units.seed, unit, tally);
       ++added;
-      const auto done = static_cast<double>(before + added) / static_cast<double>(before + count);
+      const double done = static_cast<double>(wanted - count + added) / static_cast<double>(wanted);
       if (!goOn(progress, done)) stopped = true;
     }
   };
@@ -72,6 +71,15 @@ void runUnits(const TraceJob& job, const TraceUnits& units, TraceSums& sums, con
       group.run(work);
     group.run_and_wait(work);
   });
+}
+
+UnitRanges partOf(std::uint64_t count, std::uint64_t number, std::uint64_t parts) {
+  // The first parts take what does not divide evenly.
+  const std::uint64_t each = count / parts, rest = count % parts;
+  const auto start = [&](std::uint64_t part) { return part * each + std::min(part, rest); };
+  UnitRanges part;
+  part.add(start(number), start(number + 1));
+  return part;
 }
 
 }  // namespace sunfleck

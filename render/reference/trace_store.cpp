@@ -44,8 +44,8 @@ class TraceStore::Lock {
   int file_ = -1;
 };
 
-TraceStore::TraceStore(std::filesystem::path file, double seconds_between_writes)
-    : file_(std::move(file)), seconds_between_(seconds_between_writes) {
+TraceStore::TraceStore(std::filesystem::path file, double seconds_between_writes, TraceIdentity run)
+    : file_(std::move(file)), seconds_between_(seconds_between_writes), run_(std::move(run)) {
   requireWritable(file_);
   lock_ = std::make_unique<Lock>(file_);
   if (std::filesystem::exists(file_)) sections_ = readTraceFile(file_);
@@ -53,21 +53,25 @@ TraceStore::TraceStore(std::filesystem::path file, double seconds_between_writes
 
 TraceStore::TraceStore() = default;
 TraceStore::~TraceStore() = default;
+TraceStore::TraceStore(TraceStore&&) noexcept = default;
+TraceStore& TraceStore::operator=(TraceStore&&) noexcept = default;
 
 const TraceIdentity* TraceStore::identity(const std::string& name) const {
   const auto found = std::find_if(sections_.begin(), sections_.end(), [&](const auto& s) { return s.name == name; });
   return found == sections_.end() ? nullptr : &found->identity;
 }
 
-TraceSums& TraceStore::sums(const std::string& name, const TraceJob& job) {
+TraceSection& TraceStore::section(const std::string& name, const TraceJob& job) {
+  TraceIdentity identity = job.identity();
+  identity.insert(run_.begin(), run_.end());
   for (TraceSection& section : sections_) {
     if (section.name != name) continue;
-    requireSame(file_, section.identity, job.identity());
+    requireSame(file_, section.identity, identity);
     if (section.sums.bins() != job.bins() || section.sums.groups() != job.groups())
       throw InvalidInput(file_.string() + ": damaged: it has other bins than its estimator");
-    return section.sums;
+    return section;
   }
-  return sections_.emplace_back(TraceSection{name, job.identity(), TraceSums(job.bins(), job.groups())}).sums;
+  return sections_.emplace_back(TraceSection{name, std::move(identity), TraceSums(job.bins(), job.groups())});
 }
 
 void TraceStore::write() {

@@ -15,12 +15,15 @@ class TraceStore {
   TraceStore();
   // Throws InvalidInput when the file is none of ours or damaged, when it cannot be written, or when another process
   // works on it.
-  TraceStore(std::filesystem::path file, double seconds_between_writes);
+  //   run  what tells all its sections from those of other runs: the program's version, the scene
+  TraceStore(std::filesystem::path file, double seconds_between_writes, TraceIdentity run);
   ~TraceStore();
+  TraceStore(TraceStore&&) noexcept;
+  TraceStore& operator=(TraceStore&&) noexcept;
 
-  // The sums that the job goes on from; new ones unless the file has some under this name. Throws InvalidInput when
-  // those are of another job.
-  TraceSums& sums(const std::string& name, const TraceJob& job);
+  // What the job goes on from; new unless the file has a section of this name. Throws InvalidInput when that is of
+  // another job or another `run`.
+  TraceSection& section(const std::string& name, const TraceJob& job);
   // What the file says of an estimator, before its job is made; none if it has no such.
   const TraceIdentity* identity(const std::string& name) const;
 
@@ -32,6 +35,7 @@ class TraceStore {
 
   std::filesystem::path file_;
   double seconds_between_ = 0.;
+  TraceIdentity run_;
   std::unique_ptr<Lock> lock_;
   TraceSections sections_;
   std::chrono::steady_clock::time_point written_ = std::chrono::steady_clock::now();

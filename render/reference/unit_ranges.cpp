@@ -53,15 +53,19 @@ std::uint64_t UnitRanges::countOf(std::uint64_t remainder, std::uint64_t divisor
   return result;
 }
 
-std::vector<UnitRanges::Range> UnitRanges::missing(std::uint64_t first, std::uint64_t last) const {
-  std::vector<Range> result;
-  for (const auto& [low, high] : ranges_) {
-    if (high <= first) continue;
-    if (low >= last) break;
-    if (first < low) result.emplace_back(first, low);
-    first = high;
+UnitRanges UnitRanges::without(const UnitRanges& other) const {
+  UnitRanges result;
+  for (const auto& [start, last] : ranges_) {
+    std::uint64_t first = start;
+    auto at = other.ranges_.upper_bound(first);
+    if (at != other.ranges_.begin()) --at;
+    for (; at != other.ranges_.end() && at->first < last; ++at) {
+      if (at->second <= first) continue;
+      result.add(first, at->first);
+      first = at->second;
+    }
+    result.add(first, last);
   }
-  if (first < last) result.emplace_back(first, last);
   return result;
 }
 

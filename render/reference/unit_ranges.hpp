@@ -12,6 +12,9 @@ class UnitRanges {
  public:
   using Range = std::pair<std::uint64_t, std::uint64_t>;
 
+  UnitRanges() = default;
+  UnitRanges(std::uint64_t first, std::uint64_t last) { add(first, last); }
+
   // Throws std::logic_error when one of them is in the set already: no unit counts twice.
   void add(std::uint64_t first, std::uint64_t last);
   void add(std::uint64_t unit) { add(unit, unit + 1); }
@@ -23,8 +26,7 @@ class UnitRanges {
   // How many leave `remainder` when divided by `divisor`.
   std::uint64_t countOf(std::uint64_t remainder, std::uint64_t divisor) const;
   std::vector<Range> ranges() const { return {ranges_.begin(), ranges_.end()}; }
-  // What [first, last) has and this set has not.
-  std::vector<Range> missing(std::uint64_t first, std::uint64_t last) const;
+  UnitRanges without(const UnitRanges& other) const;
   bool operator==(const UnitRanges&) const = default;
 
  private:
