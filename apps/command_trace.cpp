@@ -123,6 +123,7 @@ class TraceRun {
     const ForwardJob job(rays_, bands_, per_unit);
     TraceSection& section = store_.section("light", job);
     const std::uint64_t units = unitsOf(paths, per_unit);
+    if (extent_.target == 0.) section.asked = units;
     const TraceGoal goal = extent_.target > 0.
                                ? until(extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
                                : allOf(partOf(units, extent_.part, extent_.parts));
@@ -158,6 +159,7 @@ class TraceRun {
     const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit));
     TraceSection& section = store_.section("picture", job);
     TraceGoal goal = allOf(partOf(job.unitsOf(samples), extent_.part, extent_.parts));
+    if (extent_.target == 0.) section.asked = job.unitsOf(samples);
     if (extent_.target > 0.)
       goal = {.next = [&](const auto& sums) { return job.unitsFor(extent_.target, kMostTileUnits, sums); },
               .decides_by_findings = true};

@@ -65,7 +65,7 @@ class ForwardPaths {
       Fate fate = scatter(optics_.of(hit), weight, random);
       if (scatterings == kMostScatterings) fate = Fate::absorbed;
       if (fate == Fate::absorbed) weight = {};
-      addTo(layout_.total(absorbedBy(hit.surface), 0), arriving - weight);
+      keep(layout_.total(absorbedBy(hit.surface), 0), arriving, weight);
       if (fate == Fate::absorbed) return;
       if (hit.surface == Surface::leaf) ++(fate == Fate::passed ? passes : reflections);
       goOn(hit, fate, from, direction, random);
@@ -87,6 +87,12 @@ class ForwardPaths {
   void arriveDirect(const Hit& hit) {
     if (hit.surface == Surface::none) tally_.add(layout_.direct(), share_);
     if (hit.surface == Surface::leaf) tally_.add(layout_.leafSide(hit.leaf, hit.front) + layout_.bands, share_);
+  }
+
+  // Subtracted in double precision, so that nothing gets lost in rounding.
+  void keep(std::size_t first, const BandLanes<N>& arriving, const BandLanes<N>& leaving) {
+    for (std::size_t band = 0; band < layout_.bands; ++band)
+      tally_.add(first + band, share_ * (double{arriving[static_cast<int>(band)]} - double{leaving[static_cast<int>(band)]}));
   }
 
   // The bins of all bands, one after the other.

@@ -84,7 +84,8 @@ Json headerOf(const TraceSections& sections) {
                       {"bins", section.sums.bins()},
                       {"groups", section.sums.groups()},
                       {"done", done},
-                      {"planned", section.planned.ranges()}});
+                      {"planned", section.planned.ranges()},
+                      {"asked", section.asked}});
   }
   return header;
 }
@@ -108,6 +109,7 @@ TraceSection readSection(const Json& header, Reader& body, const fs::path& path)
     return units;
   };
   section.planned = unitsIn(header.at("planned"));
+  section.asked = header.at("asked").get<std::uint64_t>();
   for (const Json& of_seed : header.at("done"))
     section.sums.restore(of_seed.at("seed").get<std::uint64_t>(), unitsIn(of_seed.at("units")));
   for (std::uint64_t first = 0; (first = body.get<std::uint64_t>()) != std::numeric_limits<std::uint64_t>::max();) {
@@ -156,6 +158,35 @@ TraceSections readTraceFile(const fs::path& path) {
   }
   if (!reader.empty()) throw InvalidInput(path.string() + ": damaged: there is more than its header tells");
   return sections;
+}
+
+void addPart(TraceSections& whole, const TraceSections& part, const fs::path& path) {
+  for (const TraceSection& section : part) {
+    const auto same = std::find_if(whole.begin(), whole.end(), [&](const auto& s) { return s.name == section.name; });
+    if (same == whole.end()) {
+      whole.push_back(section);
+      continue;
+    }
+    requireSame(path, section.identity, same->identity);
+    if (section.sums.bins() != same->sums.bins() || section.sums.groups() != same->sums.groups())
+      throw InvalidInput(path.string() + ": damaged: it has other bins than its estimator");
+    for (const auto& [seed, units] : section.sums.done()) {
+      const auto [first, last] = units.overlap(same->sums.done(seed));
+      if (first < last)
+        throw InvalidInput(fmt::format("{}: units {} to {} of seed {} of {}: must not be in another file too",
+                                       path.string(), first, last - 1, seed, section.name));
+    }
+    same->sums.add(section.sums);
+    same->asked = std::max(same->asked, section.asked);
+    same->planned = {};
+  }
+}
+
+std::map<std::uint64_t, UnitRanges> missingUnits(const TraceSection& section) {
+  std::map<std::uint64_t, UnitRanges> missing;
+  for (const auto& [seed, units] : section.sums.done())
+    if (UnitRanges left = UnitRanges(0, section.asked).without(units); left.count() > 0) missing[seed] = std::move(left);
+  return missing;
 }
 
 void requireSame(const fs::path& path, const TraceIdentity& found, const TraceIdentity& expected) {

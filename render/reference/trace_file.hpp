@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "render/reference/trace_job.hpp"
@@ -17,6 +18,7 @@ struct TraceSection {
   // What the run was about to compute when the file was written: decisions that rest on what had been found by then are
   // not made anew, so that an interrupted run goes the same way as one that was not.
   UnitRanges planned{};
+  std::uint64_t asked = 0;  // units of the whole that this run is, or is a part of
 };
 
 using TraceSections = std::deque<TraceSection>;  // a section stays where it is when others are added
@@ -28,6 +30,13 @@ void writeTraceFile(const std::filesystem::path& path, const TraceSections& sect
 
 // Throws InvalidInput("<path>: ...") on a file that is none, is damaged or of another version of the format.
 TraceSections readTraceFile(const std::filesystem::path& path);
+
+// Adds what `part`, read from `path`, has found to `whole`. Throws InvalidInput when it is of another run or holds units
+// that are there already.
+void addPart(TraceSections& whole, const TraceSections& part, const std::filesystem::path& path);
+
+// Units [0, asked) that a section has not, of the seeds that it has some of.
+std::map<std::uint64_t, UnitRanges> missingUnits(const TraceSection& section);
 
 // Throws InvalidInput("<path>: made with <name> = <value>: must be <expected>") at the first difference.
 void requireSame(const std::filesystem::path& path, const TraceIdentity& found, const TraceIdentity& expected);

@@ -26,10 +26,6 @@ struct BandLanes {
     for (int band = 0; band < N; ++band) (*this)[band] *= factor;
     return *this;
   }
-  friend BandLanes operator-(BandLanes a, const BandLanes& b) {
-    for (int band = 0; band < N; ++band) a[band] -= b[band];
-    return a;
-  }
   float largest() const {
     float result = of_band[0];
     for (int band = 1; band < N; ++band) result = std::max(result, (*this)[band]);
