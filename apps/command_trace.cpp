@@ -1,22 +1,35 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 
 #include "apps/commands.hpp"
 #include "apps/pictures.hpp"
 #include "apps/scene_options.hpp"
+#include "apps/slab_options.hpp"
 #include "apps/terminal.hpp"
+#include "apps/trace_output.hpp"
+#include "apps/version.hpp"
+#include "core/elapsed.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
+#include "grid/density_grid.hpp"
 #include "render/compare/validation.hpp"
 #include "render/image_file.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
+#include "render/reference/trace_goal.hpp"
 
 namespace sunfleck::apps {
 namespace {
+
+// A picture that is to reach an error stops here at the latest.
+constexpr std::uint64_t kMostTileUnits = 1'000'000;
 
 struct TraceOptions {
   SceneOptions scene;
@@ -25,98 +38,219 @@ struct TraceOptions {
   int samples = 64;
   int band = 0;
   float exposure = kExposure;
-  bool without_wood = false, only_picture = false;
+  bool all_bands = false, without_wood = false, only_picture = false;
   std::string leaves, picture;
+  std::vector<float> other_leaf;  // reflectance, transmittance
+  std::string checkpoint, target, time, part;
+  double write_every = 60.;  // [s]
 };
 
-struct Row {
-  const char* name;
-  const char* meaning;
-  Estimate estimate;
+// How long and how far a run goes.
+struct Extent {
+  double target = 0.;  // relative error to reach; 0: none
+  double seconds = std::numeric_limits<double>::infinity();
+  std::uint64_t part = 0, parts = 1;
 };
 
-std::vector<Row> rowsOf(const ForwardResult& r) {
-  return {{"reflected", "back to the sky", r.reflected},
-          {"absorbed_leaves", "absorbed by leaves", r.absorbed_leaves},
-          {"absorbed_wood", "absorbed by wood", r.absorbed_wood},
-          {"arriving_ground", "arriving at the ground", r.arriving_ground},
-          {"arriving_ground_direct", "  without meeting a leaf", r.arriving_ground_direct},
-          {"absorbed_ground", "absorbed by the ground", r.absorbed_ground}};
+// "90", "90s", "1.5m", "2h" in seconds.
+double secondsOf(const std::string& text) {
+  double value = 0.;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const double scale = unit.empty() || unit == "s" ? 1. : unit == "m" ? 60. : unit == "h" ? 3600. : 0.;
+  if (error != std::errc() || !(value * scale > 0.) || !(value * scale < 1e9))
+    throw InvalidInput("--time " + text + ": must be seconds, or a number with s, m or h, above 0");
+  return value * scale;
 }
 
-// Leaves of several kinds are told apart by the kind's name in a first column.
-void writeLeaves(const std::string& file, const Scene& scene, const ForwardResult& result) {
-  const bool several = scene.kinds.size() > 1;
-  std::string text = several ? "kind," : "";
-  text += "leaf,area_m2,irradiance,standard_error\n";
-  std::size_t i = 0;
-  for (const TreeKind& kind : scene.kinds) {
-    const std::vector<double> areas = leafAreas(*kind.mesh);
-    for (std::size_t leaf = 0; leaf < areas.size(); ++leaf, ++i) {
-      if (several) text += kind.name + ",";
-      text += fmt::format("{},{:.9g},{:.9g},{:.4g}\n", leaf, areas[leaf], result.leaf_irradiance[i],
-                          result.leaf_standard_error[i]);
-    }
+Extent extentOf(const TraceOptions& options) {
+  Extent extent;
+  if (!options.target.empty()) {
+    const std::optional<double> target = shareOf(options.target);
+    if (!target) throw InvalidInput("--target " + options.target + ": must be a relative error such as 0.5% or 0.005");
+    extent.target = *target;
   }
-  writeWhole(file, text);
+  if (!options.time.empty()) extent.seconds = secondsOf(options.time);
+  if (!options.part.empty()) {
+    const char* const last = options.part.data() + options.part.size();
+    const auto number = std::from_chars(options.part.data(), last, extent.part);
+    const bool slash = number.ec == std::errc() && number.ptr != last && *number.ptr == '/';
+    const auto parts = std::from_chars(slash ? number.ptr + 1 : last, last, extent.parts);
+    if (!slash || parts.ec != std::errc() || parts.ptr != last || extent.part < 1 || extent.part > extent.parts)
+      throw InvalidInput("--part " + options.part + ": must be K/N, the K-th of N parts");
+    --extent.part;
+  }
+  return extent;
 }
 
-// JSON has no infinity: an error that is not known is null.
-nlohmann::ordered_json known(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+// What tells this scene and this program from others.
+TraceIdentity identityOf(const Scene& scene, bool with_wood) {
+  TraceIdentity identity{{"program", versionText()}, {"wood", with_wood ? "with" : "without"}};
+  for (std::size_t kind = 0; kind < scene.kinds.size(); ++kind) {
+    Stand of_kind{.trees = {}, .period = scene.stand.period};
+    for (const Placement& tree : scene.stand.trees)
+      if (tree.kind == kind) of_kind.trees.push_back(tree);
+    identity["hash of trees " + scene.kinds[kind].name] = standHash(*scene.kinds[kind].mesh, of_kind);
+  }
+  return identity;
 }
+
+// A size of a unit that a run began with is kept, whatever it is told on going on.
+std::uint64_t unitSize(const TraceIdentity* begun, const std::string& name, std::uint64_t fresh) {
+  if (!begun || !begun->contains(name)) return fresh;
+  const std::string& text = begun->at(name);
+  std::from_chars(text.data(), text.data() + text.size(), fresh);
+  return fresh;
+}
+
+class TraceRun {
+ public:
+  TraceRun(const TraceOptions& options, const RunOptions& run, const Scene& scene)
+      : options_(options),
+        run_(run),
+        scene_(scene),
+        extent_(extentOf(options)),
+        rays_(meshes(scene), scene.stand, !options.without_wood) {
+    for (int band = 0; band < kBands; ++band)
+      if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
+    if (!options.checkpoint.empty())
+      store_ = TraceStore(options.checkpoint, options.write_every, identityOf(scene, !options.without_wood));
+  }
+
+  void light() {
+    const auto paths = static_cast<std::uint64_t>(options_.paths);
+    const std::uint64_t per_unit = unitSize(store_.identity("light"), "paths per unit", pathsPerUnit(paths));
+    const ForwardJob job(rays_, bands_, per_unit);
+    TraceSection& section = store_.section("light", job);
+    const std::uint64_t units = unitsOf(paths, per_unit);
+    if (extent_.target == 0.) section.asked = units;
+    const TraceGoal goal = extent_.target > 0.
+                               ? until(extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
+                               : allOf(partOf(units, extent_.part, extent_.parts));
+    const Spent spent = work(goal, job, section, "tracing light");
+    if (section.sums.units() == 0) return;
+
+    const std::vector<ForwardResult> results = job.results(section.sums);
+    const ForwardResult& first = results.front();
+    if (!options_.leaves.empty()) writeLeaves(options_.leaves, scene_, first);
+    json_.update(jsonOf(first));
+    json_["paths"] = first.paths;
+    json_["seconds"] = spent.seconds;
+    json_["cpu_seconds"] = spent.cpu_seconds;
+    if (options_.all_bands)
+      for (const ForwardResult& result : results) json_["bands"].push_back(jsonOf(result));
+    if (!run_.json) {
+      static constexpr std::array names{"red", "green", "blue"};
+      fmt::print("{}: share of the incident light\n", scene_.name);
+      for (std::size_t band = 0; band < results.size(); ++band) {
+        if (options_.all_bands) fmt::print(" {}\n", names[band]);
+        fmt::print("{}", tableOf(results[band]));
+      }
+      printSpeed(first.paths, spent);
+    }
+    if (!options_.other_leaf.empty()) printOtherLeaf(first);
+  }
+
+  void picture() {
+    const PixelRays pixels = pixelRays(scene_);
+    const auto samples = static_cast<std::uint64_t>(options_.samples);
+    const std::uint64_t per_unit = unitSize(store_.identity("picture"), "samples per unit",
+                                            static_cast<std::uint64_t>(samplesPerUnit(samples)));
+    const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit));
+    TraceSection& section = store_.section("picture", job);
+    TraceGoal goal = allOf(partOf(job.unitsOf(samples), extent_.part, extent_.parts));
+    if (extent_.target == 0.) section.asked = job.unitsOf(samples);
+    if (extent_.target > 0.)
+      goal = {.next = [&](const auto& sums) { return job.unitsFor(extent_.target, kMostTileUnits, sums); },
+              .decides_by_findings = true};
+    const Spent spent = work(goal, job, section, "tracing the picture");
+    if (section.sums.units() == 0) return;
+
+    const CameraResult result = std::move(job.results(section.sums).front());
+    if (!options_.picture.empty()) writeImage(options_.picture, result.radiance, options_.exposure);
+    json_["image_mean"] = result.mean.value;
+    json_["image_mean_se"] = known(result.mean.standard_error);
+    json_["image_paths"] = result.paths;
+    json_["image_cpu_seconds"] = spent.cpu_seconds;
+    if (run_.json) return;
+    fmt::print("picture {} x {}: mean radiance {:.7f} +- {:.7f}\n", pixels.width, pixels.height, result.mean.value,
+               result.mean.standard_error);
+    printSpeed(result.paths, spent);
+  }
+
+  const nlohmann::ordered_json& json() const { return json_; }
+  bool whole() const { return whole_; }  // whether all was computed that had been asked for
+
+ private:
+  struct Spent {
+    std::uint64_t units = 0, units_before = 0;
+    double seconds = 0., cpu_seconds = 0.;
+  };
+
+  Spent work(const TraceGoal& goal, const TraceJob& job, TraceSection& section, const std::string& label) {
+    Spent spent{.units_before = section.sums.units()};
+    TraceGoal timed = goal;
+    timed.seconds = extent_.seconds;
+    const Elapsed elapsed;
+    whole_ = pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet)) && whole_;
+    spent.seconds = elapsed.seconds();
+    spent.cpu_seconds = elapsed.cpuSeconds();
+    spent.units = section.sums.units();
+    return spent;
+  }
+
+  // Speed tells of the paths of this time alone.
+  static void printSpeed(std::uint64_t paths, const Spent& spent) {
+    const double share = 1. - static_cast<double>(spent.units_before) / static_cast<double>(spent.units);
+    const double now = share * static_cast<double>(paths);
+    fmt::print("  {} paths", paths);
+    if (spent.units_before > 0) fmt::print(", {:.0f} of them now,", now);
+    fmt::print(" in {:.1f} s, {:.2f} million per CPU second\n", spent.seconds, now * 1e-6 / spent.cpu_seconds);
+  }
+
+  void printOtherLeaf(const ForwardResult& result) {
+    const LeafOptics leaf{.reflectance = options_.other_leaf[0], .transmittance = options_.other_leaf[1]};
+    const LeafOptics traced = scene_.kinds.front().leaf[static_cast<std::size_t>(options_.all_bands ? 0 : options_.band)];
+    for (const TreeKind& kind : scene_.kinds)
+      for (const LeafOptics& of_band : kind.leaf)
+        if (of_band != traced && scene_.kinds.size() > 1)
+          throw InvalidInput("--other-leaf: must be for scenes whose leaves are all alike");
+    const Estimate up = result.reflected_by_order.reweighted(traced, leaf);
+    const Estimate down = result.arriving_ground_by_order.reweighted(traced, leaf);
+    json_["other_leaf"] = {{"reflectance", leaf.reflectance},
+                           {"transmittance", leaf.transmittance},
+                           {"reflected", up.value},
+                           {"arriving_ground", down.value},
+                           {"standard_errors", {{"reflected", up.standard_error}, {"arriving_ground", down.standard_error}}}};
+    if (!run_.json) fmt::print("{}", tableOf(result, traced, leaf));
+  }
+
+  const TraceOptions& options_;
+  const RunOptions& run_;
+  const Scene& scene_;
+  Extent extent_;
+  RayScene rays_;
+  std::vector<TraceLight> bands_;
+  TraceStore store_;
+  nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
+  bool whole_ = true;
+};
 
 int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (!options.leaves.empty()) requireNamed(options.leaves, ".csv");
   if (!options.picture.empty()) requirePictureName(options.picture);
+  if (!options.checkpoint.empty()) requireNamed(options.checkpoint, ".trace");
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
+  TraceRun trace(options, run, scene);
+  if (!options.only_picture) trace.light();
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
+  if (pictured && !interrupted()) trace.picture();
 
-  const RayScene rays(meshes(scene), scene.stand, !options.without_wood);
-  const TraceLight light = traceLight(scene, options.band);
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  if (!options.only_picture) {
-    const TraceEffort effort{
-        .paths = static_cast<std::uint64_t>(options.paths), .seed = run.seed, .threads = run.threads};
-    const ForwardResult result = traceForward(rays, light, effort, terminalProgress("tracing light", run.quiet));
-    if (!options.leaves.empty()) writeLeaves(options.leaves, scene, result);
-    for (const Row& row : rowsOf(result)) {
-      json[row.name] = row.estimate.value;
-      json["standard_errors"][row.name] = known(row.estimate.standard_error);
-    }
-    json["paths"] = result.paths;
-    json["seconds"] = result.seconds;
-    json["cpu_seconds"] = result.cpu_seconds;
-    if (!run.json) {
-      fmt::print("{}: share of the incident light\n", scene.name);
-      for (const Row& row : rowsOf(result))
-        fmt::print("  {:<26} {:.6f} +- {:.6f}\n", row.meaning, row.estimate.value, row.estimate.standard_error);
-      fmt::print("  {} paths in {:.1f} s, {:.2f} million per CPU second\n", result.paths, result.seconds,
-                 static_cast<double>(result.paths) * 1e-6 / result.cpu_seconds);
-    }
-  }
-  if (pictured && !interrupted()) {
-    const PixelRays pixels = pixelRays(scene);
-    const auto samples = static_cast<std::uint64_t>(options.samples) * static_cast<std::uint64_t>(pixels.width) *
-                         static_cast<std::uint64_t>(pixels.height);
-    const TraceEffort effort{.paths = samples, .seed = run.seed, .threads = run.threads};
-    const CameraResult result = traceCamera(rays, light, pixels, bounds(scene).low.z, effort,
-                                            terminalProgress("tracing the picture", run.quiet));
-    if (!options.picture.empty()) writeImage(options.picture, result.radiance, options.exposure);
-    json["image_mean"] = result.mean.value;
-    json["image_mean_se"] = known(result.mean.standard_error);
-    json["image_paths"] = result.paths;
-    json["image_cpu_seconds"] = result.cpu_seconds;
-    if (!run.json)
-      fmt::print(
-          "picture {} x {}: mean radiance {:.7f} +- {:.7f}; {} paths in {:.1f} s, {:.2f} million per CPU second\n",
-          pixels.width, pixels.height, result.mean.value, result.mean.standard_error, result.paths, result.seconds,
-          static_cast<double>(result.paths) * 1e-6 / result.cpu_seconds);
-  }
-  if (run.json) fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  for (const std::string& file : {options.leaves, options.picture})
-    if (!file.empty() && !run.json && !interrupted()) fmt::print("wrote {}\n", file);
+  if (run.json)
+    fmt::print("{}\n", trace.json().dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  for (const std::string& file : {options.leaves, options.picture, options.checkpoint})
+    if (!file.empty() && !run.json && std::filesystem::exists(file)) fmt::print("wrote {}\n", file);
   if (interrupted()) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
   return interrupted() ? 1 : 0;
 }
@@ -142,6 +276,26 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   command->add_flag("--only-picture", trace->only_picture, "Trace the picture alone")->excludes("--leaves");
   command->add_option("--exposure", trace->exposure, "Factor from radiance to brightness in a .png (default 3)")
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
+  command->add_flag("--all-bands", trace->all_bands, "Trace the three bands of the scene on the same paths")
+      ->excludes("--band");
+  command->add_option("--other-leaf", trace->other_leaf,
+                      "Tell the shares also for leaves of this reflectance and transmittance, from the same paths")
+      ->expected(2)
+      ->check(numberIn(0., 1., "in [0, 1]"));
+  command->add_option("--checkpoint", trace->checkpoint,
+                      "File of the run's state (.trace): written now and then and at the end. When it is there, the run "
+                      "goes on from it");
+  command->add_option("--write-every", trace->write_every, "Seconds between two writes of that file (default 60)")
+      ->check(numberIn(0., 1e9, "in [0, 1e9] s"))
+      ->needs("--checkpoint");
+  CLI::Option* target = command->add_option(
+      "--target", trace->target,
+      "Stop at this relative error, such as 0.5%, of all shares above 1 %, and of the picture's pixels (root mean square, "
+      "by the mean)");
+  command->add_option("--time", trace->time, "Stop after so long: seconds, or with m or h, such as 10m");
+  command->add_option("--part", trace->part, "Compute the K-th of N equal parts, K/N, for sunfleck merge to put together")
+      ->needs("--checkpoint")
+      ->excludes(target);
   command->add_flag("--without-wood", trace->without_wood, "Leave the wood out");
   command->callback([trace, &options, &status] { status = runTrace(*trace, options); });
 }

@@ -89,6 +89,7 @@ int run(int count, char** arguments) {
   apps::addPlant(app, options, status);
   apps::addVoxelize(app, options, status);
   apps::addTrace(app, options, status);
+  apps::addMerge(app, options, status);
   apps::addRender(app, options, status);
   apps::addBench(app, options, status);
   try {

@@ -6,6 +6,7 @@
 
 #include "plants/random_leaves.hpp"
 #include "render/reference/camera_trace.hpp"
+#include "render/reference/forward_trace.hpp"
 
 // Monte Carlo on a crown like the reference tree: 9,000 squares of 5 cm, 18,000 triangles, in an ellipsoid of
 // 2 x 2 x 3 m with spherical leaf angles, albedo 0.95, sun overhead. One thread, so that time is CPU time.

@@ -12,6 +12,7 @@ find_package(tomlplusplus REQUIRED)
 find_package(Boost REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(ZLIB REQUIRED)
+find_path(Random123_INCLUDE_DIR Random123/philox.h REQUIRED)  # headers alone
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 find_package(GTest REQUIRED)

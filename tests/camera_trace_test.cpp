@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/require.hpp"
+#include "render/reference/forward_trace.hpp"
 #include "tests/leaf_shapes.hpp"
 
 using namespace sunfleck;
@@ -54,7 +55,7 @@ TEST(R2_CameraTrace, LoneSurfacesHaveLambertsRadiance) {
   const CameraResult above = traceCamera(scene, light, picture(down, {0, 0, 3}, 1.f, 16), 0.f, effort);
   EXPECT_NEAR(above.mean.value, 0.3 * cosine * kInversePi, 1e-7);
   EXPECT_NEAR(above.mean.standard_error, 0., 1e-8);
-  EXPECT_EQ(above.paths, 5u * 4u * 256u);  // whole passes of four samples a pixel
+  EXPECT_EQ(above.paths, 20u * 256u);  // whole samples of each pixel
   for (float value : above.radiance.values) EXPECT_NEAR(value, 0.3 * cosine * kInversePi, 1e-7);
 
   const CameraResult below = traceCamera(scene, light, picture(-down, {0, 0, 3}, 1.f, 16), 0.f, effort);
@@ -177,8 +178,8 @@ TEST(R2_CameraTrace, IsTheSameForAnyNumberOfThreads) {
   }
   EXPECT_NE(one.mean.value, traceCamera(scene, light, rays, 0.f, {.paths = 12'000, .seed = 2}).mean.value);
 
-  const CameraResult first = traceCamera(scene, light, rays, 0.f, {.paths = 12'000}, [](double) { return false; });
-  EXPECT_EQ(first.paths, 4u * 37u * 37u);
+  const CameraResult first = traceCamera(scene, light, rays, 0.f, {.paths = 12'000, .threads = 1}, [](double) { return false; });
+  EXPECT_EQ(first.paths, 32u * 32u);  // one sample for each pixel of the first tile
   EXPECT_GT(first.mean.value, 0.);
   EXPECT_TRUE(std::isfinite(first.mean.standard_error));
 }

@@ -61,7 +61,7 @@ TEST(R1_ForwardTrace, ConservesEnergy) {
                                                 {.paths = 6400});
       EXPECT_NEAR(energy(result), 1., 1e-12) << albedo << " " << ground;
       if (albedo == 1.f) {
-        EXPECT_EQ(result.absorbed_leaves.value, 0.);
+        EXPECT_NEAR(result.absorbed_leaves.value, 0., 1e-5);  // rounding of weights in single precision
       }
       if (albedo == 0.f && ground == 0.f) {
         EXPECT_EQ(result.reflected.value, 0.);
@@ -109,7 +109,7 @@ TEST(R1_ForwardTrace, FlatLeafDoesNotMeetItself) {
     const ForwardResult black = traceForward(scene, {.sun = sun, .leaf = {0.f, 0.f}}, effort);
     EXPECT_EQ(white.leaf_irradiance, black.leaf_irradiance) << i;
     EXPECT_GT(black.absorbed_leaves.value, 0.);
-    EXPECT_EQ(white.absorbed_leaves.value, 0.);
+    EXPECT_NEAR(white.absorbed_leaves.value, 0., 1e-6);  // rounding of weights in single precision
   }
 }
 
@@ -282,7 +282,7 @@ TEST(R1_ForwardTrace, IsTheSameForAnyNumberOfThreads) {
   const RayScene scene(mesh, {.period = glm::vec2(2.f, 1.f)}, true);
   const TraceLight light{.sun = sunlight(35.f * kDegree, 1.f), .ground_albedo = 0.2f};
   const ForwardResult one = traceForward(scene, light, {.paths = 10'000, .threads = 1});
-  EXPECT_EQ(one.paths, 10'048u);  // 64 batches of 157
+  EXPECT_EQ(one.paths, 10'112u);  // 79 units of 128
   for (int threads : {0, 2, 5}) {
     const ForwardResult many = traceForward(scene, light, {.paths = 10'000, .threads = threads});
     EXPECT_EQ(one.leaf_irradiance, many.leaf_irradiance);
@@ -305,8 +305,8 @@ TEST(R1_ForwardTrace, EndsEarlyWithWhatIsThere) {
       return static_cast<int>(calls.size()) < batches;
     });
     EXPECT_EQ(static_cast<int>(calls.size()), batches);
-    EXPECT_DOUBLE_EQ(calls.back(), batches / 64.);
-    EXPECT_EQ(result.paths, 1000u * static_cast<unsigned>(batches));
+    EXPECT_DOUBLE_EQ(calls.back(), batches / 125.);  // units of 512 paths
+    EXPECT_EQ(result.paths, 512u * static_cast<unsigned>(batches));
     EXPECT_NEAR(energy(result), 1., 1e-12);
     for (std::size_t i = 0; i < mesh.leaf_count; ++i) EXPECT_TRUE(std::isfinite(result.leaf_standard_error[i]));
     if (batches == 1) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "render/reference/camera_trace.hpp"
+#include "render/reference/forward_trace.hpp"
 #include "tests/leaf_shapes.hpp"
 
 // The tracers against other people's. Those reference scenes lie beside the repository; without them, leaves of the

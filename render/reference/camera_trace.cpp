@@ -1,127 +1,27 @@
 #include "render/reference/camera_trace.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <numbers>
 
-#include "core/random.hpp"
 #include "core/require.hpp"
-#include "render/reference/detail/absorption.hpp"
-#include "render/reference/detail/batch_mean.hpp"
-#include "render/reference/detail/cosine_law.hpp"
-#include "render/reference/detail/ordered_batches.hpp"
-#include "render/reference/detail/scene_geometry.hpp"
-#include "render/reference/detail/stopwatch.hpp"
+#include "render/reference/detail/eye_paths.hpp"
+#include "render/reference/detail/identity_text.hpp"
+#include "core/elapsed.hpp"
+#include "render/reference/trace_run.hpp"
 
 namespace sunfleck {
 using namespace detail;
 namespace {
 
-constexpr int kStrata = 2;                          // per side of a pixel
-constexpr int kSamplesPerPass = kStrata * kStrata;  // per pixel
-constexpr int kRowsPerBlock = 8;                    // traced by one thread at a time
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kTileSide = 32;  // [pixel]
+constexpr int kMostSamplesPerUnit = 16;
+constexpr int kLeastUnitsOfTile = 8;
 
-// Sums over the samples of a pixel.
-struct PixelSum {
-  double radiance = 0., squares = 0.;
-};
-
-class EyePaths {
- public:
-  EyePaths(const RayScene::Geometry& scene, const TraceLight& light, const PixelRays& rays, float ground_height)
-      : scene_(scene), light_(light), rays_(rays), to_sun_(-light.sun), ground_(ground_height - scene.origin.z) {
-    rays_.corner -= scene.origin;
-    reach_ = 0.5f * glm::length(scene.box.size()) + 8.f * scene.lift;
-  }
-
-  // Adds one sample of every stratum to each pixel of rows first .. last - 1.
-  void addPass(int first, int last, Random random, std::vector<PixelSum>& sums) const {
-    for (int y = first; y < last; ++y)
-      for (int x = 0; x < rays_.width; ++x) {
-        PixelSum& sum =
-            sums[static_cast<std::size_t>(y) * static_cast<std::size_t>(rays_.width) + static_cast<std::size_t>(x)];
-        for (int stratum = 0; stratum < kSamplesPerPass; ++stratum) {
-          const float right = (static_cast<float>(stratum % kStrata) + random.uniform()) / kStrata;
-          const float down = (static_cast<float>(stratum / kStrata) + random.uniform()) / kStrata;
-          const double radiance = sample(rays_.corner + (static_cast<float>(x) + right) * rays_.right_step +
-                                             (static_cast<float>(y) + down) * rays_.down_step,
-                                         random);
-          sum.radiance += radiance;
-          sum.squares += radiance * radiance;
-        }
-      }
-  }
-
- private:
-  // Radiance that arrives along the line of sight through a point [1/sr].
-  double sample(const glm::vec3& on_line, Random& random) const {
-    glm::vec3 from = startOf(on_line);
-    glm::vec3 direction = rays_.sight;
-    double weight = 1., radiance = 0., absorbed = 0.;
-    for (int scatterings = 0; scatterings < kMostScatterings; ++scatterings) {
-      const float to_ground = toGround(from, direction);
-      Hit hit =
-          scene_.closest(from, direction, scatterings == 0 ? Coherence::coherent : Coherence::incoherent, to_ground);
-      if (hit.surface == Surface::none) {
-        if (to_ground == kInfinity) break;
-        hit.position = from + to_ground * direction;
-        hit.position.z = ground_;
-        hit.normal = {0.f, 0.f, 1.f};
-      }
-      const Shares shares = sharesOf(hit);
-      radiance += weight * fromSun(hit, shares);
-      const float albedo = shares.reflected + shares.passed;
-      if (!scatters(double{albedo}, weight, absorbed, random)) break;
-      const glm::vec3 side = random.uniform() * albedo < shares.reflected ? hit.normal : -hit.normal;
-      from = scene_.leave(hit.position, side);
-      direction = lambertDirection(side, random);
-    }
-    return radiance;
-  }
-
-  // Where a line of sight starts: right before the box, where positions are exact, but before it meets the ground and,
-  // where a layer of trees has no end, before that.
-  glm::vec3 startOf(const glm::vec3& on_line) const {
-    const Direction& sight = rays_.sight;
-    const glm::vec3 from = on_line - (glm::dot(on_line - scene_.box.centre(), sight) + reach_) * sight;
-    if (sight.z == 0.f || (!scene_.period && light_.ground_albedo == 0.f)) return from;
-    const float face = sight.z > 0.f ? scene_.low : std::max(scene_.high, ground_);
-    return from + std::min(0.f, (face - from.z) / sight.z) * sight;
-  }
-
-  struct Shares {
-    float reflected, passed;  // of the arriving light [1]
-  };
-  Shares sharesOf(const Hit& hit) const {
-    if (hit.surface == Surface::none) return {light_.ground_albedo, 0.f};
-    const TreeOptics tree = light_.ofKind(hit.kind);
-    if (hit.surface == Surface::wood) return {tree.wood_reflectance, 0.f};
-    return {tree.leaf.reflectance, tree.leaf.transmittance};
-  }
-
-  // Distance to the ground along a ray, infinite if it meets none.
-  float toGround(const glm::vec3& from, const glm::vec3& direction) const {
-    if (light_.ground_albedo == 0.f || direction.z >= 0.f || from.z < ground_) return kInfinity;
-    return (ground_ - from.z) / direction.z;
-  }
-
-  // Radiance that a surface sends on from the sun to the side its normal points to [1/sr].
-  double fromSun(const Hit& hit, const Shares& shares) const {
-    const float cosine = glm::dot(hit.normal, to_sun_);
-    const float share = cosine > 0.f ? shares.reflected : shares.passed;
-    if (share == 0.f || cosine == 0.f) return 0.;
-    const glm::vec3 from = scene_.leave(hit.position, cosine > 0.f ? hit.normal : -hit.normal);
-    if (scene_.blocked(from, to_sun_)) return 0.;
-    return double{share} * std::abs(double{cosine}) * std::numbers::inv_pi;
-  }
-
-  const RayScene::Geometry& scene_;
-  const TraceLight& light_;
-  PixelRays rays_;
-  Direction to_sun_;
-  float ground_;       // height [m]
-  float reach_ = 0.f;  // from the box's centre to where rays start [m]
+// A part of the picture.
+struct Tile {
+  int left, top, right, bottom;  // [pixel], right and bottom one beyond
+  int pixels() const { return (right - left) * (bottom - top); }
 };
 
 void validate(const PixelRays& rays) {
@@ -134,74 +34,211 @@ void validate(const PixelRays& rays) {
       require(std::abs(v[axis]) <= 1e7f, "corner or step of the picture's pixels", v[axis], "finite and at most 1e7 m");
 }
 
-Image emptyImage(const PixelRays& rays) {
-  Image image{.width = rays.width, .height = rays.height, .channels = {"Y"}, .values = {}};
-  image.values.reserve(static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height));
-  return image;
-}
-
-CameraResult resultOf(const std::vector<PixelSum>& sums, const PixelRays& rays, std::uint64_t passes) {
-  CameraResult result;
-  result.radiance = emptyImage(rays);
-  result.standard_error = emptyImage(rays);
-  const double samples = static_cast<double>(passes) * kSamplesPerPass;
-  double sum = 0., variance_sum = 0.;
-  for (const PixelSum& pixel : sums) {
-    const double mean = pixel.radiance / samples;
-    const double variance = std::max(0., pixel.squares / samples - mean * mean) / (samples - 1.);  // of the mean
-    result.radiance.values.push_back(static_cast<float>(mean));
-    result.standard_error.values.push_back(static_cast<float>(std::sqrt(variance)));
-    sum += mean;
-    variance_sum += variance;
-  }
-  const double pixels = static_cast<double>(sums.size());
-  result.mean = {.value = sum / pixels, .standard_error = std::sqrt(variance_sum) / pixels};
-  result.paths = sums.size() * passes * kSamplesPerPass;
-  return result;
-}
-
 }  // namespace
 
-CameraResult traceCamera(const RayScene& scene, const TraceLight& light, const PixelRays& rays, float ground_height,
-                         const TraceEffort& effort, const Progress& progress) {
-  requireFitting(light, scene);
-  validate(effort);
+struct CameraJob::Parts {
+  Parts(const RayScene& of, std::vector<TraceLight> of_bands, const PixelRays& of_rays, float ground_height, int samples)
+      : scene(of.geometry()),
+        bands(std::move(of_bands)),
+        rays(of_rays),
+        ground(ground_height - scene.origin.z),
+        samples_per_unit(samples),
+        optics(bands, scene.prototypes.size()) {
+    rays.corner -= scene.origin;
+  }
+
+  int tilesAcross() const { return (rays.width + kTileSide - 1) / kTileSide; }
+  int tilesDown() const { return (rays.height + kTileSide - 1) / kTileSide; }
+  std::uint64_t tiles() const { return static_cast<std::uint64_t>(tilesAcross()) * static_cast<std::uint64_t>(tilesDown()); }
+  Tile tile(std::uint64_t number) const {
+    const auto across = static_cast<std::uint64_t>(tilesAcross());
+    const int left = static_cast<int>(number % across) * kTileSide, top = static_cast<int>(number / across) * kTileSide;
+    return {left, top, std::min(left + kTileSide, rays.width), std::min(top + kTileSide, rays.height)};
+  }
+
+  // Bins: of each tile, per band, its mean; then of each pixel, per band, all its radiance and what was scattered once.
+  std::size_t tileMean(std::uint64_t tile, int band) const { return tile * bands.size() + static_cast<std::size_t>(band); }
+  std::size_t pixel(int x, int y, int band) const {
+    const std::size_t number = static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.width) + static_cast<std::size_t>(x);
+    return tiles() * bands.size() + 2 * (number * bands.size() + static_cast<std::size_t>(band));
+  }
+
+  CameraResult result(const TraceSums& sums, int band) const;
+
+  const RayScene::Geometry& scene;
+  std::vector<TraceLight> bands;
+  PixelRays rays;  // about the scene's origin
+  float ground;    // height about the scene's origin [m]
+  int samples_per_unit;
+  AnyLanes optics;
+};
+
+CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays, float ground_height,
+                     int samples_per_unit) {
+  requireFitting(bands, scene);
   validate(rays);
   require(std::isfinite(ground_height), "ground height", ground_height, "finite");
   const RayScene::Geometry& geometry = scene.geometry();
-  if (geometry.period && light.ground_albedo > 0.f)
+  const bool has_ground = std::any_of(bands.begin(), bands.end(), [](const auto& b) { return b.ground_albedo > 0.f; });
+  if (geometry.period && has_ground)
     require(ground_height <= geometry.stand_box.low.z, "ground height", ground_height,
             "at most the bottom of a periodic stand, " + std::to_string(geometry.stand_box.low.z));
+  parts_ = std::make_unique<Parts>(scene, std::move(bands), rays, ground_height, samples_per_unit);
+}
 
-  const Stopwatch stopwatch;
-  const EyePaths paths(geometry, light, rays, ground_height);
+CameraJob::~CameraJob() = default;
+
+std::size_t CameraJob::bins() const {
+  return parts_->pixel(0, parts_->rays.height, 0);
+}
+
+std::uint64_t CameraJob::groups() const {
+  return parts_->tiles();
+}
+
+int CameraJob::samplesPerUnit() const {
+  return parts_->samples_per_unit;
+}
+
+std::uint64_t CameraJob::unitsOf(std::uint64_t samples) const {
+  return sunfleck::unitsOf(samples, static_cast<std::uint64_t>(parts_->samples_per_unit)) * groups();
+}
+
+TraceIdentity CameraJob::identity() const {
+  const PixelRays& rays = parts_->rays;
+  const auto text = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
+  TraceIdentity identity = identityOf(parts_->bands);
+  identity["camera"] = fmt::format("{} x {} along {}, corner {}, steps {}, {}", rays.width, rays.height,
+                                   text(rays.sight), text(rays.corner), text(rays.right_step), text(rays.down_step));
+  identity["ground height"] = fmt::format("{}", parts_->ground);
+  identity["samples per unit"] = std::to_string(parts_->samples_per_unit);
+  return identity;
+}
+
+void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const {
+  const PixelRays& rays = parts_->rays;
+  const Tile tile = parts_->tile(unit % groups());
+  const auto samples = static_cast<std::uint32_t>(parts_->samples_per_unit);
+  const int band_count = static_cast<int>(parts_->bands.size());
+  const double share = 1. / samples, share_of_tile = share / tile.pixels();
+  parts_->optics.visit([&](const auto& optics) {
+    const EyePaths paths(parts_->scene, optics, parts_->bands.front().sun, parts_->ground);
+    std::uint64_t pixel_of_run = unit * kTileSide * kTileSide;
+    for (int y = tile.top; y < tile.bottom; ++y)
+      for (int x = tile.left; x < tile.right && !stopped.load(std::memory_order_relaxed); ++x, ++pixel_of_run)
+        for (std::uint32_t i = 0; i < samples; ++i) {
+          PathRandom random(seed, pixel_of_run * samples + i, pixel_of_run, i);
+          const Pair at = random.pair();
+          const glm::vec3 on_line = rays.corner + (static_cast<float>(x) + at.u) * rays.right_step +
+                                    (static_cast<float>(y) + at.v) * rays.down_step;
+          const auto seen = paths.look(paths.startOf(on_line, rays.sight), rays.sight, random);
+          for (int band = 0; band < band_count; ++band) {
+            const double once = double{seen.leaf_once[band]} + double{seen.other_once[band]};
+            const double radiance = once + double{seen.more[band]};
+            const std::size_t pixel = parts_->pixel(x, y, band);
+            tally.add(pixel, share * radiance);
+            tally.add(pixel + 1, share * once);
+            tally.add(parts_->tileMean(unit % groups(), band), share_of_tile * radiance);
+          }
+        }
+  });
+}
+
+CameraResult CameraJob::Parts::result(const TraceSums& sums, int band) const {
+  CameraResult result;
+  result.radiance = {.width = rays.width, .height = rays.height, .channels = {"Y", "single.Y"}, .values = {}};
+  result.standard_error = {.width = rays.width, .height = rays.height, .channels = {"Y"}, .values = {}};
   const std::size_t pixels = static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height);
-  const std::uint64_t per_pass = pixels * kSamplesPerPass;
-  const std::uint64_t passes = (effort.paths + per_pass - 1) / per_pass;
-  const auto blocks = static_cast<std::size_t>((rays.height + kRowsPerBlock - 1) / kRowsPerBlock);
-  std::vector<PixelSum> sums(pixels);
-  std::uint64_t done = 0;
-  bool go_on = true;
-  while (done < passes && go_on) {
-    inOrder(
-        blocks, effort.threads,
-        [&](std::size_t block, const Stopped&) {
-          const int first = static_cast<int>(block) * kRowsPerBlock;
-          paths.addPass(first, std::min(first + kRowsPerBlock, rays.height), Random(effort.seed, done * blocks + block),
-                        sums);
-          return block;
-        },
-        [&](std::size_t block, std::size_t) {
-          const double part = static_cast<double>(block + 1) / static_cast<double>(blocks);
-          go_on = goOn(progress, (static_cast<double>(done) + part) / static_cast<double>(passes)) && go_on;
-          return true;
-        });
-    ++done;
+  result.radiance.values.resize(2 * pixels);
+  result.standard_error.values.resize(pixels);
+  double sum = 0., variance = 0., pixels_met = 0.;
+  for (std::uint64_t number = 0; number < tiles(); ++number) {
+    const std::uint64_t units = sums.units(number);
+    if (units == 0) continue;
+    const Tile of = tile(number);
+    const double weight = of.pixels();
+    const Estimate mean = sums.estimate(tileMean(number, band), number);
+    pixels_met += weight;
+    sum += weight * mean.value;
+    variance += std::pow(weight * mean.standard_error, 2);
+    result.paths += units * static_cast<std::uint64_t>(of.pixels()) * static_cast<std::uint64_t>(samples_per_unit);
+    for (int y = of.top; y < of.bottom; ++y)
+      for (int x = of.left; x < of.right; ++x) {
+        const Estimate radiance = sums.estimate(pixel(x, y, band), number);
+        const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.width) + static_cast<std::size_t>(x);
+        result.radiance.values[2 * at] = static_cast<float>(radiance.value);
+        result.radiance.values[2 * at + 1] = static_cast<float>(sums.estimate(pixel(x, y, band) + 1, number).value);
+        result.standard_error.values[at] = static_cast<float>(radiance.standard_error);
+      }
   }
-  CameraResult result = resultOf(sums, rays, done);
-  result.seconds = stopwatch.seconds();
-  result.cpu_seconds = stopwatch.cpuSeconds();
+  if (pixels_met > 0.) result.mean = {sum / pixels_met, std::sqrt(variance) / pixels_met};
   return result;
+}
+
+std::vector<CameraResult> CameraJob::results(const TraceSums& sums) const {
+  std::vector<CameraResult> results;
+  for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band) results.push_back(parts_->result(sums, band));
+  return results;
+}
+
+// With v the sum over a tile's pixels of the variance that a unit leaves, n units of each tile leave sum v / n. For the
+// least work, n goes as sqrt(v).
+UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSums& sums) const {
+  const double pixels = double(parts_->rays.width) * double(parts_->rays.height);
+  std::vector<double> wanted(groups(), double{kLeastUnitsOfTile});
+  for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band) {
+    std::vector<double> deviation(groups());  // sqrt(v)
+    double deviations = 0., radiance = 0.;
+    for (std::uint64_t number = 0; number < groups(); ++number) {
+      const Tile tile = parts_->tile(number);
+      double variance = 0.;
+      for (int y = tile.top; y < tile.bottom; ++y)
+        for (int x = tile.left; x < tile.right; ++x)
+          variance += std::pow(sums.estimate(parts_->pixel(x, y, band), number).standard_error, 2);
+      deviation[number] = std::sqrt(variance * static_cast<double>(sums.units(number)));
+      deviations += deviation[number];
+      radiance += tile.pixels() * sums.estimate(parts_->tileMean(number, band), number).value;
+    }
+    const double allowed = std::pow(target * radiance / pixels, 2) * pixels;  // sum over pixels of squared errors
+    for (std::uint64_t number = 0; number < groups() && allowed > 0.; ++number)
+      wanted[number] = std::max(wanted[number], deviation[number] * deviations / allowed);
+  }
+  UnitRanges units;
+  for (std::uint64_t number = 0; number < groups(); ++number) {
+    const std::uint64_t done = sums.units(number);
+    // At most twice what there is, as what is known of the noise is noisy itself.
+    const double least = double{kLeastUnitsOfTile}, twice = std::max(least, 2. * static_cast<double>(done));
+    const auto goal = static_cast<std::uint64_t>(std::min({std::ceil(wanted[number]), twice, static_cast<double>(most)}));
+    for (std::uint64_t pass = done; pass < goal; ++pass) units.add(pass * groups() + number);
+  }
+  return units;
+}
+
+int samplesPerUnit(std::uint64_t samples) {
+  return static_cast<int>(std::clamp<std::uint64_t>(std::bit_floor(samples / kLeastUnitsOfTile), 1, kMostSamplesPerUnit));
+}
+
+std::vector<CameraResult> traceCameraBands(const RayScene& scene, const std::vector<TraceLight>& bands, const PixelRays& rays,
+                                      float ground_height, const TraceEffort& effort, const Progress& progress) {
+  validate(effort);
+  validate(rays);
+  const Elapsed elapsed;
+  const std::uint64_t samples =
+      unitsOf(effort.paths, static_cast<std::uint64_t>(rays.width) * static_cast<std::uint64_t>(rays.height));
+  const CameraJob job(scene, bands, rays, ground_height, samplesPerUnit(samples));
+  TraceSums sums(job.bins(), job.groups());
+  runUnits(job, {.seed = effort.seed, .wanted = {0, job.unitsOf(samples)}, .threads = effort.threads}, sums, progress);
+  std::vector<CameraResult> results = job.results(sums);
+  for (CameraResult& result : results) {
+    result.seconds = elapsed.seconds();
+    result.cpu_seconds = elapsed.cpuSeconds();
+  }
+  return results;
+}
+
+CameraResult traceCamera(const RayScene& scene, const TraceLight& light, const PixelRays& rays, float ground_height,
+                         const TraceEffort& effort, const Progress& progress) {
+  return std::move(traceCameraBands(scene, {light}, rays, ground_height, effort, progress).front());
 }
 
 }  // namespace sunfleck

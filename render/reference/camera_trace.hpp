@@ -1,7 +1,16 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <vector>
+
 #include "core/image.hpp"
-#include "render/reference/forward_trace.hpp"
+#include "core/progress.hpp"
+#include "render/reference/ray_scene.hpp"
+#include "render/reference/trace_effort.hpp"
+#include "render/reference/trace_job.hpp"
+#include "render/reference/trace_light.hpp"
+#include "render/reference/trace_sums.hpp"
 
 namespace sunfleck {
 
@@ -13,19 +22,52 @@ struct PixelRays {
   int width = 0, height = 0;
 };
 
+// Of one band.
 struct CameraResult {
-  Image radiance;        // channel "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr]
+  Image radiance;        // channels "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr], and "single.Y":
+                         // what of it was scattered once
   Image standard_error;  // channel "Y": of the radiance of each pixel
   Estimate mean;         // of all pixels
   std::uint64_t paths = 0;
   double seconds = 0., cpu_seconds = 0.;
 };
 
-// (R2) Monte Carlo from the camera to the sun, with the sun sampled at every hit, before a black sky. Every pass adds
-// four samples to each pixel, one in each quarter of it; `effort.paths` is rounded up to whole passes. A ground plane
-// without end (albedo > 0) lies at `ground_height` [m] and is seen from above; under a periodic stand it must not lie
-// above the bottom of the box. When `progress` ends it early, the passes done until then are the result, at least one.
-// Throws InvalidInput on invalid light, effort, rays or ground height.
+// (R2) Monte Carlo from the camera to the sun, with the sun sampled at every hit, before a black sky. A unit adds
+// `samples_per_unit` to each pixel of a square tile, evenly spread over the pixel. A ground plane without end (albedo > 0)
+// lies at `ground_height` [m] and is seen from above; under a periodic stand it must not lie above the bottom of the box.
+class CameraJob final : public TraceJob {
+ public:
+  //   scene  must outlive the job
+  // Throws InvalidInput on invalid light, rays or ground height, and on more than kMostBands bands.
+  CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays, float ground_height,
+            int samples_per_unit);
+  ~CameraJob() override;
+
+  std::size_t bins() const override;
+  std::uint64_t groups() const override;  // tiles
+  TraceIdentity identity() const override;
+  void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const override;
+
+  int samplesPerUnit() const;
+  std::uint64_t unitsOf(std::uint64_t samples) const;                // that add so many samples to each pixel
+  std::vector<CameraResult> results(const TraceSums& sums) const;  // of each band
+  // What brings the root mean square standard error of the pixels, relative to the mean of the picture, to `target` in
+  // each band: more units for the tiles that are noisier. Nothing when it is there, or at `most` units of each tile.
+  UnitRanges unitsFor(double target, std::uint64_t most, const TraceSums& sums) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<const Parts> parts_;
+};
+
+// Samples of a unit for a run of so many per pixel: a power of two that leaves several units to tell the error by.
+int samplesPerUnit(std::uint64_t samples);
+
+// The whole run in memory; `effort.paths` is rounded up to whole samples of each pixel. When `progress` ends it early,
+// the units done until then are the result, at least one; pixels without any are zero.
+std::vector<CameraResult> traceCameraBands(const RayScene& scene, const std::vector<TraceLight>& bands, const PixelRays& rays,
+                                      float ground_height, const TraceEffort& effort, const Progress& progress = {});
+// The same for one band.
 CameraResult traceCamera(const RayScene& scene, const TraceLight& light, const PixelRays& rays, float ground_height,
                          const TraceEffort& effort, const Progress& progress = {});
 

@@ -3,209 +3,247 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.hpp"
 #include "core/require.hpp"
-#include "render/reference/detail/absorption.hpp"
-#include "render/reference/detail/batch_mean.hpp"
 #include "render/reference/detail/cosine_law.hpp"
-#include "render/reference/detail/ordered_batches.hpp"
+#include "render/reference/detail/identity_text.hpp"
+#include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
-#include "render/reference/detail/stopwatch.hpp"
+#include "render/reference/detail/scene_optics.hpp"
+#include "core/elapsed.hpp"
 #include "render/reference/detail/sunlit_faces.hpp"
+#include "render/reference/trace_run.hpp"
 
 namespace sunfleck {
 using namespace detail;
 namespace {
 
-// Sums of the paths of one batch, a path weighing 1 when it starts.
-struct Tally {
-  double reflected = 0., absorbed_leaves = 0., absorbed_wood = 0.;
-  double arriving_ground = 0., arriving_ground_direct = 0., absorbed_ground = 0.;
-  std::vector<double> leaf;  // arriving at each
+// Where each number is kept among the bins of a run of B bands.
+struct Layout {
+  std::size_t bands, leaves;
+
+  enum Total { reflected, absorbed_leaves, absorbed_wood, absorbed_ground, arriving_ground };
+  static constexpr std::size_t kTotals = 5;
+  std::size_t total(Total which, int band) const { return which * bands + index(band); }
+  // Direct light is the same in all bands.
+  std::size_t direct() const { return kTotals * bands; }
+
+  enum Leaving { upward, downward };
+  std::size_t orders(Leaving how) const { return direct() + 1 + how * OrderTable::kBins * bands; }
+  std::size_t order(Leaving how, std::size_t bin, int band) const { return orders(how) + bin * bands + index(band); }
+
+  // Of each leaf, front and back: all light of each band, and the direct.
+  std::size_t leafSide(std::size_t leaf, bool front) const {
+    return direct() + 1 + 2 * OrderTable::kBins * bands + (2 * leaf + (front ? 0 : 1)) * (bands + 1);
+  }
+  std::size_t bins() const { return leafSide(leaves, true); }
+
+ private:
+  static std::size_t index(int band) { return static_cast<std::size_t>(band); }
 };
 
-class BatchTracer {
+template <int N>
+class ForwardPaths {
  public:
-  BatchTracer(const RayScene::Geometry& scene, const TraceLight& light, const SunlitFaces& faces, std::uint64_t seed,
-              std::size_t batch)
-      : scene_(scene), light_(light), faces_(faces), random_(seed, batch) {
-    tally_.leaf.assign(scene.leaf_area.size(), 0.);
-  }
+  ForwardPaths(const RayScene::Geometry& scene, const SunlitFaces& faces, Direction sun, const SceneOptics<N>& optics,
+               const Layout& layout, double share, UnitTally& tally)
+      : scene_(scene), faces_(faces), sun_(sun), optics_(optics), layout_(layout), share_(share), tally_(tally) {}
 
-  Tally trace(std::uint64_t paths, const Stopped& stopped) {
-    EvenPoints points(random_);
-    for (std::uint64_t i = 0; i < paths && !stopped.load(std::memory_order_relaxed); ++i, points.next())
-      tracePath(faces_.start(points.u(), points.v()));
-    return std::move(tally_);
+  void trace(PathRandom& random) {
+    const Pair start = random.pair();
+    glm::vec3 from = faces_.start(double{start.u}, double{start.v});
+    glm::vec3 direction = sun_;
+    BandLanes<N> weight = BandLanes<N>::all(1.f);
+    int reflections = 0, passes = 0;
+    for (int scatterings = 0;; ++scatterings) {
+      const Hit hit = scene_.closest(from, direction, Coherence::incoherent);
+      const bool none = hit.surface == Surface::none;
+      if (none) leave(direction.z >= 0.f ? Layout::upward : Layout::downward, weight, reflections, passes);
+      if (none && direction.z >= 0.f) return;
+      if (scatterings == 0) arriveDirect(hit);
+      if (hit.surface == Surface::leaf) addTo(layout_.leafSide(hit.leaf, hit.front), weight);
+      const BandLanes<N> arriving = weight;
+      Fate fate = scatter(optics_.of(hit), weight, random);
+      if (scatterings == kMostScatterings) fate = Fate::absorbed;
+      if (fate == Fate::absorbed) weight = {};
+      keep(layout_.total(absorbedBy(hit.surface), 0), arriving, weight);
+      if (fate == Fate::absorbed) return;
+      if (hit.surface == Surface::leaf) ++(fate == Fate::passed ? passes : reflections);
+      goOn(hit, fate, from, direction, random);
+    }
   }
 
  private:
-  void tracePath(glm::vec3 from) {
-    glm::vec3 direction = light_.sun;
-    double weight = 1.;
-    for (int scatterings = 0;; ++scatterings) {
-      const Hit hit = scene_.closest(from, direction, Coherence::incoherent);
-      if (hit.surface == Surface::none && direction.z >= 0.f) {
-        tally_.reflected += weight;
-        return;
-      }
-      if (hit.surface == Surface::none && scatterings == 0) tally_.arriving_ground_direct += weight;
-      double& absorbed = arrive(hit, weight);
-      if (scatterings == kMostScatterings) {
-        absorbed += weight;
-        return;
-      }
-      if (!scatters(albedo(hit), weight, absorbed, random_)) return;
-      leave(hit, from, direction);
-    }
+  // What a surface keeps is what the path has lost there, so that no path makes or loses light.
+  static typename Layout::Total absorbedBy(Surface surface) {
+    if (surface == Surface::none) return Layout::absorbed_ground;
+    return surface == Surface::leaf ? Layout::absorbed_leaves : Layout::absorbed_wood;
   }
 
-  // Counts the arrival at what was hit, nothing being the ground, and names where its absorbed light is kept.
-  double& arrive(const Hit& hit, double weight) {
-    if (hit.surface == Surface::wood) return tally_.absorbed_wood;
-    if (hit.surface == Surface::leaf) {
-      tally_.leaf[hit.leaf] += weight;
-      return tally_.absorbed_leaves;
-    }
-    tally_.arriving_ground += weight;
-    return tally_.absorbed_ground;
+  void leave(typename Layout::Leaving how, const BandLanes<N>& weight, int reflections, int passes) {
+    addTo(layout_.total(how == Layout::upward ? Layout::reflected : Layout::arriving_ground, 0), weight);
+    addTo(layout_.order(how, OrderTable::bin(reflections, passes), 0), weight);
   }
 
-  double albedo(const Hit& hit) const {
-    if (hit.surface == Surface::none) return double{light_.ground_albedo};
-    const TreeOptics tree = light_.ofKind(hit.kind);
-    return hit.surface == Surface::wood ? double{tree.wood_reflectance} : double{tree.leaf.albedo()};
+  void arriveDirect(const Hit& hit) {
+    if (hit.surface == Surface::none) tally_.add(layout_.direct(), share_);
+    if (hit.surface == Surface::leaf) tally_.add(layout_.leafSide(hit.leaf, hit.front) + layout_.bands, share_);
   }
 
-  void leave(const Hit& hit, glm::vec3& from, glm::vec3& direction) {
+  // Subtracted in double precision, so that nothing gets lost in rounding.
+  void keep(std::size_t first, const BandLanes<N>& arriving, const BandLanes<N>& leaving) {
+    for (std::size_t band = 0; band < layout_.bands; ++band)
+      tally_.add(first + band, share_ * (double{arriving[static_cast<int>(band)]} - double{leaving[static_cast<int>(band)]}));
+  }
+
+  // The bins of all bands, one after the other.
+  void addTo(std::size_t first, const BandLanes<N>& weight) {
+    for (std::size_t band = 0; band < layout_.bands; ++band)
+      tally_.add(first + band, share_ * double{weight[static_cast<int>(band)]});
+  }
+
+  void goOn(const Hit& hit, Fate fate, glm::vec3& from, glm::vec3& direction, PathRandom& random) {
     if (hit.surface == Surface::none) {
       from = scene_.wrapped(from + (scene_.low - from.z) / direction.z * direction);
       from.z = scene_.low;
-      direction = lambertDirection({0.f, 0.f, 1.f}, random_);
+      direction = lambertDirection({0.f, 0.f, 1.f}, random);
       return;
     }
-    const LeafOptics optics = light_.ofKind(hit.kind).leaf;
-    const bool passes = hit.surface == Surface::leaf && random_.uniform() * optics.albedo() >= optics.reflectance;
-    const glm::vec3 side = passes ? -hit.normal : hit.normal;
+    const glm::vec3 side = fate == Fate::passed ? -hit.normal : hit.normal;
     from = scene_.leave(hit.position, side);
-    direction = lambertDirection(side, random_);
+    direction = lambertDirection(side, random);
   }
 
   const RayScene::Geometry& scene_;
-  const TraceLight& light_;
   const SunlitFaces& faces_;
-  Random random_;
-  Tally tally_;
+  Direction sun_;
+  const SceneOptics<N>& optics_;
+  const Layout& layout_;
+  double share_;  // of the incident light that a path starts with
+  UnitTally& tally_;
 };
-
-// The means over the batches, and the result they make.
-class ForwardMeans {
- public:
-  // `flux_per_area`: what a share of the incident flux means as irradiance of each leaf [1].
-  explicit ForwardMeans(std::vector<double> flux_per_area)
-      : flux_per_area_(std::move(flux_per_area)), leaf_(flux_per_area_.size()) {}
-
-  void add(const Tally& tally, double paths) {
-    count_ += 1.;
-    reflected_.add(tally.reflected / paths, count_);
-    absorbed_leaves_.add(tally.absorbed_leaves / paths, count_);
-    absorbed_wood_.add(tally.absorbed_wood / paths, count_);
-    arriving_ground_.add(tally.arriving_ground / paths, count_);
-    arriving_ground_direct_.add(tally.arriving_ground_direct / paths, count_);
-    absorbed_ground_.add(tally.absorbed_ground / paths, count_);
-    for (std::size_t i = 0; i < leaf_.size(); ++i) leaf_[i].add(tally.leaf[i] / paths * flux_per_area_[i], count_);
-  }
-
-  ForwardResult result() const {
-    ForwardResult result{.reflected = reflected_.estimate(count_),
-                         .absorbed_leaves = absorbed_leaves_.estimate(count_),
-                         .absorbed_wood = absorbed_wood_.estimate(count_),
-                         .arriving_ground = arriving_ground_.estimate(count_),
-                         .arriving_ground_direct = arriving_ground_direct_.estimate(count_),
-                         .absorbed_ground = absorbed_ground_.estimate(count_),
-                         .leaf_irradiance = {},
-                         .leaf_standard_error = {}};
-    for (const BatchMean& leaf : leaf_) {
-      const Estimate irradiance = leaf.estimate(count_);
-      result.leaf_irradiance.push_back(irradiance.value);
-      result.leaf_standard_error.push_back(irradiance.standard_error);
-    }
-    return result;
-  }
-
- private:
-  double count_ = 0.;
-  BatchMean reflected_, absorbed_leaves_, absorbed_wood_, arriving_ground_, arriving_ground_direct_, absorbed_ground_;
-  std::vector<double> flux_per_area_;
-  std::vector<BatchMean> leaf_;
-};
-
-std::vector<double> fluxPerArea(const RayScene::Geometry& scene, double flux) {
-  std::vector<double> result = scene.leaf_area;
-  for (double& value : result) value = flux / value;
-  return result;
-}
 
 }  // namespace
 
-void validate(const TraceLight& light) {
-  const double length = glm::length(glm::dvec3(light.sun));
-  require(std::abs(length - 1.) < 1e-4, "length of the sun's direction", length, "1");
-  require(light.sun.z < 0.f, "z of the sun's direction", light.sun.z, "below 0: sunlight travels down");
-  const auto validateTree = [](const TreeOptics& tree) {
-    validate(tree.leaf);
-    require(tree.wood_reflectance >= 0.f && tree.wood_reflectance <= 1.f, "wood reflectance", tree.wood_reflectance,
-            "in [0, 1]");
-  };
-  validateTree({light.leaf, light.wood_reflectance});
-  for (const TreeOptics& tree : light.of_kinds) validateTree(tree);
-  require(light.ground_albedo >= 0.f && light.ground_albedo <= 1.f, "ground albedo", light.ground_albedo, "in [0, 1]");
+struct ForwardJob::Parts {
+  Parts(const RayScene& of, std::vector<TraceLight> of_bands, std::uint64_t per_unit)
+      : scene(of.geometry()),
+        bands(std::move(of_bands)),
+        paths_per_unit(per_unit),
+        faces(scene, bands.front().sun),
+        optics(bands, scene.prototypes.size()),
+        layout{.bands = bands.size(), .leaves = scene.leaf_area.size()} {}
+
+  const RayScene::Geometry& scene;
+  std::vector<TraceLight> bands;
+  std::uint64_t paths_per_unit;
+  SunlitFaces faces;
+  AnyLanes optics;
+  Layout layout;
+};
+
+ForwardJob::ForwardJob(const RayScene& scene, std::vector<TraceLight> bands, std::uint64_t paths_per_unit) {
+  requireFitting(bands, scene);
+  for (const TraceLight& light : bands)
+    require(scene.geometry().period || light.ground_albedo == 0.f, "ground albedo", light.ground_albedo,
+            "0 in a forward trace of a stand without period");
+  parts_ = std::make_unique<Parts>(scene, std::move(bands), paths_per_unit);
 }
 
-void validate(const TraceEffort& effort) {
-  require(effort.paths >= kTraceBatches && effort.paths <= 1'000'000'000'000'000u, "number of paths", effort.paths,
-          "from " + std::to_string(kTraceBatches) + " to 1e15");
-  require(effort.threads >= 0 && effort.threads <= 4096, "number of threads", effort.threads,
-          "from 0 (all cores) to 4096");
+ForwardJob::~ForwardJob() = default;
+
+std::size_t ForwardJob::bins() const {
+  return parts_->layout.bins();
 }
 
-void requireFitting(const TraceLight& light, const RayScene& scene) {
-  validate(light);
-  const std::size_t kinds = scene.geometry().prototypes.size();
-  require(light.of_kinds.empty() || light.of_kinds.size() == kinds, "number of kinds of trees with optics",
-          light.of_kinds.size(), "that of the traced scene, " + std::to_string(kinds));
+std::uint64_t ForwardJob::pathsPerUnit() const {
+  return parts_->paths_per_unit;
+}
+
+TraceIdentity ForwardJob::identity() const {
+  TraceIdentity identity = identityOf(parts_->bands);
+  identity["paths per unit"] = std::to_string(parts_->paths_per_unit);
+  return identity;
+}
+
+void ForwardJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const {
+  const std::uint64_t count = parts_->paths_per_unit;
+  parts_->optics.visit([&](const auto& optics) {
+    ForwardPaths paths(parts_->scene, parts_->faces, parts_->bands.front().sun, optics, parts_->layout,
+                       1. / static_cast<double>(count), tally);
+    for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
+      PathRandom random(seed, unit * count + i, unit, static_cast<std::uint32_t>(i));
+      paths.trace(random);
+    }
+  });
+}
+
+std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
+  const Layout& layout = parts_->layout;
+  std::vector<ForwardResult> results;
+  for (int band = 0; band < static_cast<int>(layout.bands); ++band) {
+    ForwardResult& r = results.emplace_back();
+    const auto total = [&](Layout::Total which) { return sums.estimate(layout.total(which, band)); };
+    r.reflected = total(Layout::reflected);
+    r.absorbed_leaves = total(Layout::absorbed_leaves);
+    r.absorbed_wood = total(Layout::absorbed_wood);
+    r.arriving_ground = total(Layout::arriving_ground);
+    r.arriving_ground_direct = sums.estimate(layout.direct());
+    r.absorbed_ground = total(Layout::absorbed_ground);
+    for (std::size_t bin = 0; bin < OrderTable::kBins; ++bin) {
+      r.reflected_by_order.set(bin, sums.estimate(layout.order(Layout::upward, bin, band)));
+      r.arriving_ground_by_order.set(bin, sums.estimate(layout.order(Layout::downward, bin, band)));
+    }
+    for (std::size_t leaf = 0; leaf < layout.leaves; ++leaf) {
+      const double per_area = parts_->faces.flux() / parts_->scene.leaf_area[leaf];
+      const auto irradiance = [&](bool front, std::size_t at) {
+        const Estimate share = sums.estimate(layout.leafSide(leaf, front) + at);
+        return Estimate{per_area * share.value, per_area * share.standard_error};
+      };
+      // Light on one side of a leaf and light on the other come by different paths.
+      const auto both = [](const Estimate& a, const Estimate& b) {
+        return Estimate{a.value + b.value, std::hypot(a.standard_error, b.standard_error)};
+      };
+      r.leaf_front.push_back(irradiance(true, static_cast<std::size_t>(band)));
+      r.leaf_back.push_back(irradiance(false, static_cast<std::size_t>(band)));
+      r.leaf_direct.push_back(both(irradiance(true, layout.bands), irradiance(false, layout.bands)));
+      const Estimate whole = both(r.leaf_front.back(), r.leaf_back.back());
+      r.leaf_irradiance.push_back(whole.value);
+      r.leaf_standard_error.push_back(whole.standard_error);
+    }
+    r.paths = sums.units() * parts_->paths_per_unit;
+  }
+  return results;
+}
+
+double ForwardJob::relativeError(const TraceSums& sums) const {
+  double error = 0.;
+  for (std::size_t bin = 0; bin < parts_->layout.direct(); ++bin) {
+    const Estimate share = sums.estimate(bin);
+    if (share.value >= 0.01) error = std::max(error, share.standard_error / share.value);
+  }
+  return error;
+}
+
+std::vector<ForwardResult> traceForwardBands(const RayScene& scene, const std::vector<TraceLight>& bands,
+                                        const TraceEffort& effort, const Progress& progress) {
+  validate(effort);
+  const Elapsed elapsed;
+  const std::uint64_t per_unit = pathsPerUnit(effort.paths);
+  const ForwardJob job(scene, bands, per_unit);
+  TraceSums sums(job.bins(), job.groups());
+  runUnits(job, {.seed = effort.seed, .wanted = {0, unitsOf(effort.paths, per_unit)}, .threads = effort.threads}, sums,
+           progress);
+  std::vector<ForwardResult> results = job.results(sums);
+  for (ForwardResult& result : results) {
+    result.seconds = elapsed.seconds();
+    result.cpu_seconds = elapsed.cpuSeconds();
+  }
+  return results;
 }
 
 ForwardResult traceForward(const RayScene& scene, const TraceLight& light, const TraceEffort& effort,
                            const Progress& progress) {
-  requireFitting(light, scene);
-  validate(effort);
-  const RayScene::Geometry& geometry = scene.geometry();
-  require(geometry.period || light.ground_albedo == 0.f, "ground albedo", light.ground_albedo,
-          "0 in a forward trace of a stand without period");
-
-  const Stopwatch stopwatch;
-  const SunlitFaces faces(geometry, light.sun);
-  const auto parts = [&](std::uint64_t size) { return (effort.paths + size - 1) / size; };
-  const std::uint64_t batches = std::max<std::uint64_t>(kTraceBatches, parts(kMostBatchPaths));
-  const std::uint64_t per_batch = parts(batches);
-  ForwardMeans means(fluxPerArea(geometry, faces.flux()));
-  std::uint64_t paths = 0;
-  inOrder(
-      batches, effort.threads,
-      [&](std::size_t batch, const Stopped& stopped) {
-        return BatchTracer(geometry, light, faces, effort.seed, batch).trace(per_batch, stopped);
-      },
-      [&](std::size_t batch, const Tally& tally) {
-        means.add(tally, static_cast<double>(per_batch));
-        paths += per_batch;
-        return goOn(progress, static_cast<double>(batch + 1) / static_cast<double>(batches));
-      });
-  ForwardResult result = means.result();
-  result.paths = paths;
-  result.seconds = stopwatch.seconds();
-  result.cpu_seconds = stopwatch.cpuSeconds();
-  return result;
+  return std::move(traceForwardBands(scene, {light}, effort, progress).front());
 }
 
 }  // namespace sunfleck

@@ -184,11 +184,13 @@ Hit RayScene::Geometry::describe(const RTCRayHit& ray) const {
     normal = copy.rotated(normal);
     distance += glm::dot(normal, copy.translation);
   }
+  const bool front = glm::dot(normal, direction) <= 0.f;
   return {.surface = leaf ? Surface::leaf : Surface::wood,
           .kind = copy.kind,
           .leaf = leaf ? prototype.leaf_of_triangle[ray.hit.primID] : 0,
           .position = travelled - (glm::dot(normal, travelled) - distance) * normal,
-          .normal = glm::dot(normal, direction) > 0.f ? -normal : normal};
+          .front = front,
+          .normal = front ? normal : -normal};
 }
 
 Hit RayScene::Geometry::closest(const glm::vec3& from, const glm::vec3& direction, Coherence coherence,

@@ -6,12 +6,11 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
-#include "core/random.hpp"
 #include "core/require.hpp"
 #include "render/reference/detail/absorption.hpp"
-#include "render/reference/detail/batch_mean.hpp"
-#include "render/reference/detail/ordered_batches.hpp"
-#include "render/reference/detail/stopwatch.hpp"
+#include "core/elapsed.hpp"
+#include "render/reference/trace_job.hpp"
+#include "render/reference/trace_run.hpp"
 
 namespace sunfleck {
 using namespace detail;
@@ -47,52 +46,58 @@ glm::dvec3 turned(const glm::dvec3& direction, double cosine, double turn) {
   return glm::normalize(sine * std::cos(turn) * right + sine * std::sin(turn) * up + cosine * direction);
 }
 
-// Sums of the paths of one batch, a path weighing 1 when it arrives. Direct light is left out.
-struct Tally {
-  double reflected = 0., transmitted = 0., absorbed = 0.;
-  std::vector<double> down, up;  // through each depth
-  std::vector<double> radiance;  // of each view [1/sr]
+// Where each number is kept among the bins. Direct light is left out of all.
+struct Layout {
+  std::size_t depths, views;
+
+  static constexpr std::size_t kReflected = 0, kTransmitted = 1, kAbsorbed = 2;
+  std::size_t down(std::size_t depth) const { return 3 + depth; }
+  std::size_t up(std::size_t depth) const { return down(depths) + depth; }
+  std::size_t radiance(std::size_t view) const { return up(depths) + view; }  // [1/sr]
+  std::size_t bins() const { return radiance(views); }
 };
 
-class SlabTracer {
+// Traces the paths of one unit, a path weighing `share` of the incident light when it arrives.
+class SlabPaths {
  public:
-  SlabTracer(const TracedSlab& slab, const SlabMeasures& measures, std::uint64_t seed, std::size_t batch)
-      : slab_(slab), measures_(measures), random_(seed, batch) {
-    tally_.down.assign(measures.depths.size(), 0.);
-    tally_.up = tally_.down;
-    tally_.radiance.assign(measures.views.size(), 0.);
+  SlabPaths(const TracedSlab& slab, const SlabMeasures& measures, double share, UnitTally& tally)
+      : slab_(slab),
+        measures_(measures),
+        layout_{.depths = measures.depths.size(), .views = measures.views.size()},
+        share_(share),
+        tally_(tally) {
     for (const SlabView& view : measures.views) views_.push_back(travel(view.mu, view.azimuth));
   }
 
-  Tally trace(std::uint64_t paths, const Stopped& stopped) {
-    for (std::uint64_t i = 0; i < paths && !stopped.load(std::memory_order_relaxed); ++i) tracePath();
-    return std::move(tally_);
-  }
-
- private:
   // The light that meets nothing is known; a path carries the rest, and its first collision lies within the slab.
-  void tracePath() {
+  void trace(PathRandom& random) {
     double weight = -std::expm1(-slab_.thickness / slab_.mu0);
-    double depth = std::min(-slab_.mu0 * std::log1p(-random_.uniformDouble() * weight), slab_.thickness);
+    double depth = std::min(-slab_.mu0 * std::log1p(-random.uniformDouble() * weight), slab_.thickness);
     glm::dvec3 direction = travel(slab_.mu0, 0.);
     for (int scatterings = 0;; ++scatterings) {
       addRadiance(depth, direction, weight * slab_.albedo);
       if (scatterings == kMostScatterings) {
-        tally_.absorbed += weight;
+        count(Layout::kAbsorbed, weight);
         return;
       }
-      if (!scatters(slab_.albedo, weight, tally_.absorbed, random_)) return;
-      const double cosine = sampledCosine(slab_.asymmetry, 2. * random_.uniformDouble() - 1.);
-      direction = turned(direction, cosine, 2. * kPi * random_.uniformDouble());
-      const double next = depth - direction.z * std::log1p(-random_.uniformDouble());
+      double absorbed = 0.;
+      const bool goes_on = scatters(slab_.albedo, weight, absorbed, random);
+      count(Layout::kAbsorbed, absorbed);
+      if (!goes_on) return;
+      const double cosine = sampledCosine(slab_.asymmetry, 2. * random.uniformDouble() - 1.);
+      direction = turned(direction, cosine, 2. * kPi * random.uniformDouble());
+      const double next = depth - direction.z * std::log1p(-random.uniformDouble());
       addCrossings(depth, next, weight);
       if (next <= 0. || next >= slab_.thickness) {
-        (next <= 0. ? tally_.reflected : tally_.transmitted) += weight;
+        count(next <= 0. ? Layout::kReflected : Layout::kTransmitted, weight);
         return;
       }
       depth = next;
     }
   }
+
+ private:
+  void count(std::size_t bin, double weight) { tally_.add(bin, share_ * weight); }
 
   // What a collision sends straight to each view: its expectation, without tracing it.
   void addRadiance(double depth, const glm::dvec3& direction, double scattered) {
@@ -101,67 +106,70 @@ class SlabTracer {
       const double way = (view.depth - depth) / view.mu;
       if (way < 0.) continue;
       const double towards = phase(slab_.asymmetry, glm::dot(direction, views_[i]));
-      tally_.radiance[i] += scattered * towards * std::exp(-way) / std::abs(view.mu);
+      count(layout_.radiance(i), scattered * towards * std::exp(-way) / std::abs(view.mu));
     }
   }
 
   void addCrossings(double from, double to, double weight) {
     for (std::size_t i = 0; i < measures_.depths.size(); ++i) {
       const double depth = measures_.depths[i];
-      if (from < depth && depth <= to) tally_.down[i] += weight;
-      if (to <= depth && depth < from) tally_.up[i] += weight;
+      if (from < depth && depth <= to) count(layout_.down(i), weight);
+      if (to <= depth && depth < from) count(layout_.up(i), weight);
     }
   }
 
   const TracedSlab& slab_;
   const SlabMeasures& measures_;
+  Layout layout_;
+  double share_;
+  UnitTally& tally_;
   std::vector<glm::dvec3> views_;
-  Random random_;
-  Tally tally_;
 };
 
-// The means over the batches, and the result they make.
-class SlabMeans {
+class SlabJob final : public TraceJob {
  public:
-  explicit SlabMeans(const SlabMeasures& measures)
-      : down_(measures.depths.size()), up_(measures.depths.size()), radiance_(measures.views.size()) {}
+  SlabJob(const TracedSlab& slab, const SlabMeasures& measures, std::uint64_t paths_per_unit)
+      : slab_(slab),
+        measures_(measures),
+        layout_{.depths = measures.depths.size(), .views = measures.views.size()},
+        paths_per_unit_(paths_per_unit) {}
 
-  void add(const Tally& tally, double paths) {
-    count_ += 1.;
-    const auto addAll = [&](std::vector<BatchMean>& means, const std::vector<double>& sums) {
-      for (std::size_t i = 0; i < means.size(); ++i) means[i].add(sums[i] / paths, count_);
-    };
-    reflected_.add(tally.reflected / paths, count_);
-    transmitted_.add(tally.transmitted / paths, count_);
-    absorbed_.add(tally.absorbed / paths, count_);
-    addAll(down_, tally.down);
-    addAll(up_, tally.up);
-    addAll(radiance_, tally.radiance);
+  std::size_t bins() const override { return layout_.bins(); }
+  TraceIdentity identity() const override { return {}; }
+  void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const override {
+    SlabPaths paths(slab_, measures_, 1. / static_cast<double>(paths_per_unit_), tally);
+    for (std::uint64_t i = 0; i < paths_per_unit_ && !stopped.load(std::memory_order_relaxed); ++i) {
+      PathRandom random(seed, unit * paths_per_unit_ + i);
+      paths.trace(random);
+    }
   }
 
-  SlabTraceResult result(const TracedSlab& slab, const SlabMeasures& measures) const {
-    const auto scaled = [&](const BatchMean& mean, double scale, double known) {
-      const Estimate estimate = mean.estimate(count_);
+  SlabTraceResult result(const TraceSums& sums) const {
+    const auto scaled = [&](std::size_t bin, double scale, double known) {
+      const Estimate estimate = sums.estimate(bin);
       return Estimate{scale * estimate.value + known, scale * estimate.standard_error};
     };
     SlabTraceResult result;
-    result.direct = std::exp(-slab.thickness / slab.mu0);
-    result.reflectance = scaled(reflected_, 1., 0.);
-    result.transmittance = scaled(transmitted_, 1., result.direct);
-    result.absorptance = scaled(absorbed_, 1., 0.);
-    for (std::size_t i = 0; i < down_.size(); ++i) {
-      const double direct = slab.mu0 * std::exp(-measures.depths[i] / slab.mu0);
-      result.flux_down.push_back(scaled(down_[i], slab.mu0, direct));
-      result.flux_up.push_back(scaled(up_[i], slab.mu0, 0.));
+    result.direct = std::exp(-slab_.thickness / slab_.mu0);
+    result.reflectance = sums.estimate(Layout::kReflected);
+    result.transmittance = scaled(Layout::kTransmitted, 1., result.direct);
+    result.absorptance = sums.estimate(Layout::kAbsorbed);
+    for (std::size_t i = 0; i < layout_.depths; ++i) {
+      const double direct = slab_.mu0 * std::exp(-measures_.depths[i] / slab_.mu0);
+      result.flux_down.push_back(scaled(layout_.down(i), slab_.mu0, direct));
+      result.flux_up.push_back(scaled(layout_.up(i), slab_.mu0, 0.));
     }
-    for (const BatchMean& mean : radiance_) result.radiance.push_back(scaled(mean, slab.mu0, 0.));
+    for (std::size_t i = 0; i < layout_.views; ++i)
+      result.radiance.push_back(scaled(layout_.radiance(i), slab_.mu0, 0.));
+    result.paths = sums.units() * paths_per_unit_;
     return result;
   }
 
  private:
-  double count_ = 0.;
-  BatchMean reflected_, transmitted_, absorbed_;
-  std::vector<BatchMean> down_, up_, radiance_;
+  TracedSlab slab_;
+  SlabMeasures measures_;
+  Layout layout_;
+  std::uint64_t paths_per_unit_;
 };
 
 void validate(const TracedSlab& slab, const SlabMeasures& measures) {
@@ -187,26 +195,15 @@ SlabTraceResult traceSlab(const TracedSlab& slab, const SlabMeasures& measures, 
                           const Progress& progress) {
   validate(slab, measures);
   validate(effort);
-  const Stopwatch stopwatch;
-  const auto parts = [&](std::uint64_t size) { return (effort.paths + size - 1) / size; };
-  const std::uint64_t batches = std::max<std::uint64_t>(kTraceBatches, parts(kMostBatchPaths));
-  const std::uint64_t per_batch = parts(batches);
-  SlabMeans means(measures);
-  std::uint64_t paths = 0;
-  inOrder(
-      batches, effort.threads,
-      [&](std::size_t batch, const Stopped& stopped) {
-        return SlabTracer(slab, measures, effort.seed, batch).trace(per_batch, stopped);
-      },
-      [&](std::size_t batch, const Tally& tally) {
-        means.add(tally, static_cast<double>(per_batch));
-        paths += per_batch;
-        return goOn(progress, static_cast<double>(batch + 1) / static_cast<double>(batches));
-      });
-  SlabTraceResult result = means.result(slab, measures);
-  result.paths = paths;
-  result.seconds = stopwatch.seconds();
-  result.cpu_seconds = stopwatch.cpuSeconds();
+  const Elapsed elapsed;
+  const std::uint64_t per_unit = pathsPerUnit(effort.paths);
+  const SlabJob job(slab, measures, per_unit);
+  TraceSums sums(job.bins(), job.groups());
+  runUnits(job, {.seed = effort.seed, .wanted = {0, unitsOf(effort.paths, per_unit)}, .threads = effort.threads}, sums,
+           progress);
+  SlabTraceResult result = job.result(sums);
+  result.seconds = elapsed.seconds();
+  result.cpu_seconds = elapsed.cpuSeconds();
   return result;
 }
 

@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "core/progress.hpp"
-#include "render/reference/forward_trace.hpp"
+#include "render/reference/trace_effort.hpp"
+#include "render/reference/trace_sums.hpp"
 
 namespace sunfleck {
 
@@ -42,7 +43,7 @@ struct SlabTraceResult {
 
 // (R8) Monte Carlo of a slab. A path of a million scatterings is absorbed where it is: only without absorption and in a
 // slab thicker than some hundreds is that ever seen, as 2e-3 of the light at most (infinite thickness), and paths are
-// slow there. When `progress` ends it early, the batches done until then are the result, at least one.
+// slow there. When `progress` ends it early, the units done until then are the result, at least one.
 // Throws InvalidInput on a slab, a measure or an effort out of its range.
 SlabTraceResult traceSlab(const TracedSlab& slab, const SlabMeasures& measures, const TraceEffort& effort,
                           const Progress& progress = {});

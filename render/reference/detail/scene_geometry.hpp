@@ -28,6 +28,7 @@ struct Hit {
   std::uint32_t kind = 0;   // of the tree
   std::uint32_t leaf = 0;   // when a leaf: among those of all kinds, one kind after the other
   glm::vec3 position{0.f};  // on the surface; in a periodic stand inside the traced period [m]
+  bool front = true;        // whether the ray came from the side that the corners turn about counter-clockwise
   glm::vec3 normal{0.f};    // unit, geometric, on the side the ray came from
 };
 

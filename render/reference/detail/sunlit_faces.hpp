@@ -2,12 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "core/directions.hpp"
-#include "core/random.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 
 namespace sunfleck::detail {
@@ -55,23 +53,6 @@ class SunlitFaces {
   std::array<Face, 3> faces_;  // across x, y and z
   double flux_ = 0.;
   glm::vec3 start_{0.f};
-};
-
-// Points of the unit square that fill it evenly from the first on: multiples of the inverse powers of the plastic
-// number (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"), shifted at random, so that each
-// point is uniform on its own and different shifts are independent.
-class EvenPoints {
- public:
-  explicit EvenPoints(Random& random) : u_(random.bits()), v_(random.bits()) {}
-  void next() {
-    u_ += 0xC13FA9A902A6328Fu;  // 2^64 / 1.3247...
-    v_ += 0x91E10DA5C79E7B1Cu;  // 2^64 / 1.3247...^2
-  }
-  double u() const { return static_cast<double>(u_ >> 11) * 0x1p-53; }
-  double v() const { return static_cast<double>(v_ >> 11) * 0x1p-53; }
-
- private:
-  std::uint64_t u_, v_;
 };
 
 }  // namespace sunfleck::detail

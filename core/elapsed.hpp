@@ -3,10 +3,10 @@
 #include <chrono>
 #include <ctime>
 
-namespace sunfleck::detail {
+namespace sunfleck {
 
 // Time since it was made: on the wall, and spent by all threads of this process.
-class Stopwatch {
+class Elapsed {
  public:
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start_).count();
@@ -24,4 +24,4 @@ class Stopwatch {
   double cpu_start_ = processSeconds();
 };
 
-}  // namespace sunfleck::detail
+}  // namespace sunfleck

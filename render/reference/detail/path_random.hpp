@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Random123/philox.h>
+
+#include <array>
+#include <cstdint>
+
+#include "render/reference/detail/owen_sobol.hpp"
+
+namespace sunfleck::detail {
+
+// Two numbers in [0, 1).
+struct Pair {
+  float u = 0.f, v = 0.f;
+};
+
+// The random numbers of one path, made by counting (Philox 4x32-10 of Salmon et al. 2011): they follow from the seed,
+// the path's number and how many were taken before, so that any thread, machine or later run can trace the path and
+// gets the same. The first pairs come from an Owen-scrambled Sobol' sequence that the paths of a set share: they fill
+// the square more evenly than chance does, and another `set` is scrambled independently.
+class PathRandom {
+ public:
+  // `path`: its number among all of the seed; it is the `index`-th of its set.
+  PathRandom(std::uint64_t seed, std::uint64_t path, std::uint64_t set, std::uint32_t index)
+      : key_{{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}},
+        counter_{{static_cast<std::uint32_t>(path), static_cast<std::uint32_t>(path >> 32), 0, kOfPath}},
+        index_(index) {
+    const auto scramble = r123::Philox4x32()(
+        {{static_cast<std::uint32_t>(set), static_cast<std::uint32_t>(set >> 32), 0, kOfSet}}, key_);
+    scramble_ = {scramble[0], scramble[1], scramble[2]};
+  }
+  PathRandom(std::uint64_t seed, std::uint64_t path) : PathRandom(seed, path, path, 0) { even_pairs_ = kEvenPairs; }
+
+  std::uint32_t bits() {
+    if (taken_ == 4) {
+      block_ = r123::Philox4x32()(counter_, key_);
+      ++counter_[2];
+      taken_ = 0;
+    }
+    return block_[taken_++];
+  }
+  float uniform() { return static_cast<float>(bits() >> 8) * 0x1p-24f; }  // [0, 1)
+  double uniformDouble() {                                                // [0, 1)
+    const std::uint64_t high = bits();
+    return static_cast<double>((high << 32 | bits()) >> 11) * 0x1p-53;
+  }
+
+  // The path's next pair: of the Sobol' sequence as long as evenness pays, that is for where a path starts and its
+  // first scatterings.
+  Pair pair() {
+    if (even_pairs_ == kEvenPairs) {
+      const float u = uniform();
+      return {u, uniform()};
+    }
+    const std::uint32_t dimension = even_pairs_++;
+    const auto [u, v] = scrambledSobol(index_, scramble_, dimension);
+    return {static_cast<float>(u >> 8) * 0x1p-24f, static_cast<float>(v >> 8) * 0x1p-24f};
+  }
+
+ private:
+  static constexpr std::uint32_t kOfPath = 0, kOfSet = 1;
+  static constexpr std::uint32_t kEvenPairs = 3;
+
+  r123::Philox4x32::key_type key_;
+  r123::Philox4x32::ctr_type counter_, block_{};
+  unsigned taken_ = 4;
+  std::uint32_t index_;
+  std::array<std::uint32_t, 3> scramble_;
+  std::uint32_t even_pairs_ = 0;  // taken
+};
+
+}  // namespace sunfleck::detail

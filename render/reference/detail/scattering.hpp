@@ -1,0 +1,41 @@
+#pragma once
+
+#include "render/reference/detail/band_lanes.hpp"
+#include "render/reference/detail/path_random.hpp"
+
+namespace sunfleck::detail {
+
+// Below this weight in its brightest band a path goes on by chance alone (Russian roulette).
+inline constexpr float kRouletteWeight = 0.5f;
+
+// A path of this many scatterings ends where it is: it can only be caught where nothing absorbs.
+inline constexpr int kMostScatterings = 1'000'000;
+
+// Shares of the arriving light that a surface sends back and lets pass [1], by Lambert's law, in each band.
+template <int N>
+struct SurfaceOptics {
+  BandLanes<N> reflectance, transmittance;
+};
+
+enum class Fate { absorbed, reflected, passed };
+
+// What becomes of a path that arrives with `weight`: which side it leaves by is drawn for all bands at once, by what they
+// send there together, and the weights make up for it; a light path goes on by chance. Unbiased in every band. Of an
+// absorbed path the weight means nothing.
+template <int N>
+Fate scatter(const SurfaceOptics<N>& optics, BandLanes<N>& weight, PathRandom& random) {
+  const float reflected = dot(weight, optics.reflectance), passed = dot(weight, optics.transmittance);
+  const float scattered = reflected + passed;
+  if (!(scattered > 0.f)) return Fate::absorbed;
+  const bool passes = random.uniform() * scattered >= reflected;
+  weight *= passes ? optics.transmittance : optics.reflectance;
+  weight *= scattered / (passes ? passed : reflected);
+  const float largest = weight.largest();
+  if (largest < kRouletteWeight) {
+    if (random.uniform() * kRouletteWeight >= largest) return Fate::absorbed;
+    weight *= kRouletteWeight / largest;
+  }
+  return passes ? Fate::passed : Fate::reflected;
+}
+
+}  // namespace sunfleck::detail

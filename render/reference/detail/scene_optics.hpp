@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <variant>
+#include <vector>
+
+#include "render/reference/detail/scattering.hpp"
+#include "render/reference/detail/scene_geometry.hpp"
+#include "render/reference/trace_light.hpp"
+
+namespace sunfleck::detail {
+
+// Optics of all that a ray can meet; bands beyond those given are black.
+template <int N>
+class SceneOptics {
+ public:
+  SceneOptics(const std::vector<TraceLight>& bands, std::size_t kinds) : of_kinds_(kinds) {
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+      const int band = static_cast<int>(b);
+      ground_.reflectance[band] = bands[b].ground_albedo;
+      for (std::size_t kind = 0; kind < kinds; ++kind) {
+        const TreeOptics tree = bands[b].ofKind(static_cast<std::uint32_t>(kind));
+        of_kinds_[kind].leaf.reflectance[band] = tree.leaf.reflectance;
+        of_kinds_[kind].leaf.transmittance[band] = tree.leaf.transmittance;
+        of_kinds_[kind].wood.reflectance[band] = tree.wood_reflectance;
+      }
+    }
+  }
+
+  // Of what was hit, nothing being the ground.
+  const SurfaceOptics<N>& of(const Hit& hit) const {
+    if (hit.surface == Surface::none) return ground_;
+    return hit.surface == Surface::leaf ? of_kinds_[hit.kind].leaf : of_kinds_[hit.kind].wood;
+  }
+  const SurfaceOptics<N>& ground() const { return ground_; }
+
+ private:
+  struct Kind {
+    SurfaceOptics<N> leaf, wood;
+  };
+  std::vector<Kind> of_kinds_;
+  SurfaceOptics<N> ground_;
+};
+
+// The same for any number of bands, in as many lanes as it needs.
+class AnyLanes {
+ public:
+  AnyLanes(const std::vector<TraceLight>& bands, std::size_t kinds) : optics_(make(bands, kinds)) {}
+
+  template <typename Body>
+  void visit(const Body& body) const {
+    std::visit(body, optics_);
+  }
+
+ private:
+  using Optics = std::variant<SceneOptics<1>, SceneOptics<4>, SceneOptics<8>, SceneOptics<16>>;
+  static Optics make(const std::vector<TraceLight>& bands, std::size_t kinds) {
+    if (bands.size() == 1) return SceneOptics<1>(bands, kinds);
+    if (bands.size() <= 4) return SceneOptics<4>(bands, kinds);
+    if (bands.size() <= 8) return SceneOptics<8>(bands, kinds);
+    return SceneOptics<16>(bands, kinds);
+  }
+  Optics optics_;
+};
+
+}  // namespace sunfleck::detail
