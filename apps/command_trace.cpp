@@ -85,14 +85,9 @@ Extent extentOf(const TraceOptions& options) {
 
 // What tells this scene and this program from others.
 TraceIdentity identityOf(const Scene& scene, bool with_wood) {
-  TraceIdentity identity{{"program", versionText()}, {"wood", with_wood ? "with" : "without"}};
-  for (std::size_t kind = 0; kind < scene.kinds.size(); ++kind) {
-    Stand of_kind{.trees = {}, .period = scene.stand.period};
-    for (const Placement& tree : scene.stand.trees)
-      if (tree.kind == kind) of_kind.trees.push_back(tree);
-    identity["hash of trees " + scene.kinds[kind].name] = standHash(*scene.kinds[kind].mesh, of_kind);
-  }
-  return identity;
+  return {{"program", versionText()},
+          {"hash of trees and places", standHash(meshes(scene), scene.stand)},
+          {"wood", with_wood ? "with" : "without"}};
 }
 
 // A size of a unit that a run began with is kept, whatever it is told on going on.
@@ -125,7 +120,8 @@ class TraceRun {
     const std::uint64_t units = unitsOf(paths, per_unit);
     if (extent_.target == 0.) section.asked = units;
     const TraceGoal goal = extent_.target > 0.
-                               ? until(extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
+                               ? until(
+                                     extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
                                : allOf(partOf(units, extent_.part, extent_.parts));
     const Spent spent = work(goal, job, section, "tracing light");
     if (section.sums.units() == 0) return;
@@ -154,8 +150,8 @@ class TraceRun {
   void picture() {
     const PixelRays pixels = pixelRays(scene_);
     const auto samples = static_cast<std::uint64_t>(options_.samples);
-    const std::uint64_t per_unit = unitSize(store_.identity("picture"), "samples per unit",
-                                            static_cast<std::uint64_t>(samplesPerUnit(samples)));
+    const std::uint64_t per_unit =
+        unitSize(store_.identity("picture"), "samples per unit", static_cast<std::uint64_t>(samplesPerUnit(samples)));
     const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit));
     TraceSection& section = store_.section("picture", job);
     TraceGoal goal = allOf(partOf(job.unitsOf(samples), extent_.part, extent_.parts));
@@ -192,7 +188,8 @@ class TraceRun {
     TraceGoal timed = goal;
     timed.seconds = extent_.seconds;
     const Elapsed elapsed;
-    whole_ = pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet)) && whole_;
+    whole_ =
+        pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet)) && whole_;
     spent.seconds = elapsed.seconds();
     spent.cpu_seconds = elapsed.cpuSeconds();
     spent.units = section.sums.units();
@@ -210,18 +207,20 @@ class TraceRun {
 
   void printOtherLeaf(const ForwardResult& result) {
     const LeafOptics leaf{.reflectance = options_.other_leaf[0], .transmittance = options_.other_leaf[1]};
-    const LeafOptics traced = scene_.kinds.front().leaf[static_cast<std::size_t>(options_.all_bands ? 0 : options_.band)];
+    const LeafOptics traced =
+        scene_.kinds.front().leaf[static_cast<std::size_t>(options_.all_bands ? 0 : options_.band)];
     for (const TreeKind& kind : scene_.kinds)
       for (const LeafOptics& of_band : kind.leaf)
         if (of_band != traced && scene_.kinds.size() > 1)
           throw InvalidInput("--other-leaf: must be for scenes whose leaves are all alike");
     const Estimate up = result.reflected_by_order.reweighted(traced, leaf);
     const Estimate down = result.arriving_ground_by_order.reweighted(traced, leaf);
-    json_["other_leaf"] = {{"reflectance", leaf.reflectance},
-                           {"transmittance", leaf.transmittance},
-                           {"reflected", up.value},
-                           {"arriving_ground", down.value},
-                           {"standard_errors", {{"reflected", up.standard_error}, {"arriving_ground", down.standard_error}}}};
+    json_["other_leaf"] = {
+        {"reflectance", leaf.reflectance},
+        {"transmittance", leaf.transmittance},
+        {"reflected", up.value},
+        {"arriving_ground", down.value},
+        {"standard_errors", {{"reflected", up.standard_error}, {"arriving_ground", down.standard_error}}}};
     if (!run_.json) fmt::print("{}", tableOf(result, traced, leaf));
   }
 
@@ -247,8 +246,7 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
   if (pictured && !interrupted()) trace.picture();
 
-  if (run.json)
-    fmt::print("{}\n", trace.json().dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  if (run.json) fmt::print("{}\n", trace.json().dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   for (const std::string& file : {options.leaves, options.picture, options.checkpoint})
     if (!file.empty() && !run.json && std::filesystem::exists(file)) fmt::print("wrote {}\n", file);
   if (interrupted()) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
@@ -278,22 +276,25 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
   command->add_flag("--all-bands", trace->all_bands, "Trace the three bands of the scene on the same paths")
       ->excludes("--band");
-  command->add_option("--other-leaf", trace->other_leaf,
-                      "Tell the shares also for leaves of this reflectance and transmittance, from the same paths")
+  command
+      ->add_option("--other-leaf", trace->other_leaf,
+                   "Tell the shares also for leaves of this reflectance and transmittance, from the same paths")
       ->expected(2)
       ->check(numberIn(0., 1., "in [0, 1]"));
-  command->add_option("--checkpoint", trace->checkpoint,
-                      "File of the run's state (.trace): written now and then and at the end. When it is there, the run "
-                      "goes on from it");
+  command->add_option(
+      "--checkpoint", trace->checkpoint,
+      "File of the run's state (.trace): written now and then and at the end. When it is there, the run "
+      "goes on from it");
   command->add_option("--write-every", trace->write_every, "Seconds between two writes of that file (default 60)")
       ->check(numberIn(0., 1e9, "in [0, 1e9] s"))
       ->needs("--checkpoint");
-  CLI::Option* target = command->add_option(
-      "--target", trace->target,
-      "Stop at this relative error, such as 0.5%, of all shares above 1 %, and of the picture's pixels (root mean square, "
-      "by the mean)");
+  CLI::Option* target = command->add_option("--target", trace->target,
+                                            "Stop at this relative error, such as 0.5%, of all shares above 1 %, and "
+                                            "of the picture's pixels (root mean square, "
+                                            "by the mean)");
   command->add_option("--time", trace->time, "Stop after so long: seconds, or with m or h, such as 10m");
-  command->add_option("--part", trace->part, "Compute the K-th of N equal parts, K/N, for sunfleck merge to put together")
+  command
+      ->add_option("--part", trace->part, "Compute the K-th of N equal parts, K/N, for sunfleck merge to put together")
       ->needs("--checkpoint")
       ->excludes(target);
   command->add_flag("--without-wood", trace->without_wood, "Leave the wood out");

@@ -39,7 +39,8 @@ double availableMemory(const fs::path& root) {
   for (std::string line; std::getline(groups, line);) {  // hierarchy:controllers:/group
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
     if (second == std::string::npos) continue;
-    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    std::string controllers(1, ',');
+    controllers.append(line, first + 1, second - first - 1).push_back(',');
     const fs::path group = line.substr(second + 1), mounted = root / "sys/fs/cgroup";
     if (controllers == ",,")  // version 2
       most = std::min(most, leftBy(mounted, group, "memory.max", "memory.current", "inactive_file"));

@@ -194,10 +194,10 @@ class Placed {
     const bool with_optics = leaves && prototypes_[0].optics;
     const std::size_t used = with_optics ? kFirstOptics + kOptics : leaves ? kFirstOptics : 1;
     for (const Visit& visit : visits) {
-      const std::size_t i =
+      const std::size_t number =
           static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), visit.visitor) - first_.begin()) - 1;
-      const Copy& copy = copies_[i];
-      const Leaf& source = *blocks_[copy.prototype][visit.visitor - first_[i]];
+      const Copy& copy = copies_[number];
+      const Leaf& source = *blocks_[copy.prototype][visit.visitor - first_[number]];
       const auto along = [&](int axis) {
         return SharesAlong(source.origin()[axis], copy.whole[axis], copy.fraction[axis], origin[axis], kept_.low[axis],
                            kept_.high[axis]);
