@@ -14,15 +14,6 @@ Direction sunlight(float zenith, float azimuth) {
 }
 
 // Branch-free basis of Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-Axes axesAlong(Direction along) {
-  const float sign = std::copysign(1.f, along.z);
-  const float a = -1.f / (sign + along.z);
-  const float b = along.x * along.y * a;
-  return {.right = {1.f + sign * along.x * along.x * a, sign * b, -sign * along.x},
-          .up = {b, sign + along.y * along.y * a, -along.y},
-          .along = along};
-}
-
 namespace {
 
 // Moves each axis down the slope of the energy that like charges at both ends of all axes have.

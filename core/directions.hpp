@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -19,7 +20,14 @@ Direction sunlight(float zenith, float azimuth);
 struct Axes {
   glm::vec3 right, up, along;
 };
-Axes axesAlong(Direction along);
+inline Axes axesAlong(Direction along) {
+  const float sign = std::copysign(1.f, along.z);
+  const float a = -1.f / (sign + along.z);
+  const float b = along.x * along.y * a;
+  return {.right = {1.f + sign * along.x * along.x * a, sign * b, -sign * along.x},
+          .up = {b, sign + along.y * along.y * a, -along.y},
+          .along = along};
+}
 
 // `count` > 0 axes spread evenly: each stands for itself and for the direction opposite. Up to kMostRelaxedAxes they
 // are moved from spherical Fibonacci points (Swinbank & Purser 2006) until their Coulomb energy hardly falls any more,

@@ -178,7 +178,8 @@ TEST(R2_CameraTrace, IsTheSameForAnyNumberOfThreads) {
   }
   EXPECT_NE(one.mean.value, traceCamera(scene, light, rays, 0.f, {.paths = 12'000, .seed = 2}).mean.value);
 
-  const CameraResult first = traceCamera(scene, light, rays, 0.f, {.paths = 12'000, .threads = 1}, [](double) { return false; });
+  const CameraResult first =
+      traceCamera(scene, light, rays, 0.f, {.paths = 12'000, .threads = 1}, [](double) { return false; });
   EXPECT_EQ(first.paths, 32u * 32u);  // one sample for each pixel of the first tile
   EXPECT_GT(first.mean.value, 0.);
   EXPECT_TRUE(std::isfinite(first.mean.standard_error));

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
+#include "core/elapsed.hpp"
 #include "core/require.hpp"
 #include "render/reference/detail/eye_paths.hpp"
 #include "render/reference/detail/identity_text.hpp"
-#include "core/elapsed.hpp"
 #include "render/reference/trace_run.hpp"
 
 namespace sunfleck {
@@ -24,6 +25,30 @@ struct Tile {
   int pixels() const { return (right - left) * (bottom - top); }
 };
 
+// Samples traced side by side.
+template <int N>
+struct Packet {
+  static constexpr std::size_t kSize = RayScene::Geometry::kPacket;
+  std::vector<glm::vec3> from;
+  std::vector<PathRandom> random;
+  std::vector<int> x, y;  // pixel
+  std::vector<Seen<N>> seen{kSize};
+
+  void add(const glm::vec3& start, const PathRandom& of_path, int pixel_x, int pixel_y) {
+    from.push_back(start);
+    random.push_back(of_path);
+    x.push_back(pixel_x);
+    y.push_back(pixel_y);
+  }
+  bool full() const { return from.size() == kSize; }
+  void clear() {
+    from.clear();
+    random.clear();
+    x.clear();
+    y.clear();
+  }
+};
+
 void validate(const PixelRays& rays) {
   require(rays.width > 0 && rays.width <= 65536, "picture width", rays.width, "from 1 to 65536");
   require(rays.height > 0 && rays.height <= 65536, "picture height", rays.height, "from 1 to 65536");
@@ -37,7 +62,8 @@ void validate(const PixelRays& rays) {
 }  // namespace
 
 struct CameraJob::Parts {
-  Parts(const RayScene& of, std::vector<TraceLight> of_bands, const PixelRays& of_rays, float ground_height, int samples)
+  Parts(const RayScene& of, std::vector<TraceLight> of_bands, const PixelRays& of_rays, float ground_height,
+        int samples)
       : scene(of.geometry()),
         bands(std::move(of_bands)),
         rays(of_rays),
@@ -49,7 +75,9 @@ struct CameraJob::Parts {
 
   int tilesAcross() const { return (rays.width + kTileSide - 1) / kTileSide; }
   int tilesDown() const { return (rays.height + kTileSide - 1) / kTileSide; }
-  std::uint64_t tiles() const { return static_cast<std::uint64_t>(tilesAcross()) * static_cast<std::uint64_t>(tilesDown()); }
+  std::uint64_t tiles() const {
+    return static_cast<std::uint64_t>(tilesAcross()) * static_cast<std::uint64_t>(tilesDown());
+  }
   Tile tile(std::uint64_t number) const {
     const auto across = static_cast<std::uint64_t>(tilesAcross());
     const int left = static_cast<int>(number % across) * kTileSide, top = static_cast<int>(number / across) * kTileSide;
@@ -57,9 +85,12 @@ struct CameraJob::Parts {
   }
 
   // Bins: of each tile, per band, its mean; then of each pixel, per band, all its radiance and what was scattered once.
-  std::size_t tileMean(std::uint64_t tile, int band) const { return tile * bands.size() + static_cast<std::size_t>(band); }
+  std::size_t tileMean(std::uint64_t tile, int band) const {
+    return tile * bands.size() + static_cast<std::size_t>(band);
+  }
   std::size_t pixel(int x, int y, int band) const {
-    const std::size_t number = static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.width) + static_cast<std::size_t>(x);
+    const std::size_t number =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.width) + static_cast<std::size_t>(x);
     return tiles() * bands.size() + 2 * (number * bands.size() + static_cast<std::size_t>(band));
   }
 
@@ -123,24 +154,37 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
   const double share = 1. / samples, share_of_tile = share / tile.pixels();
   parts_->optics.visit([&](const auto& optics) {
     const EyePaths paths(parts_->scene, optics, parts_->bands.front().sun, parts_->ground);
+    using Lanes = std::remove_cvref_t<decltype(optics.ground().reflectance)>;
+    Packet<Lanes::kBands> packet;
+    const auto finish = [&] {
+      paths.look(packet.from, rays.sight, packet.random, packet.seen);
+      for (std::size_t i = 0; i < packet.random.size(); ++i)
+        for (int band = 0; band < band_count; ++band) {
+          const Seen<Lanes::kBands>& seen = packet.seen[i];
+          const double once = double{seen.leaf_once[band]} + double{seen.other_once[band]};
+          const double radiance = once + double{seen.more[band]};
+          if (radiance == 0.) continue;
+          const std::size_t pixel = parts_->pixel(packet.x[i], packet.y[i], band);
+          tally.add(pixel, share * radiance);
+          tally.add(pixel + 1, share * once);
+          tally.add(parts_->tileMean(unit % groups(), band), share_of_tile * radiance);
+        }
+      packet.clear();
+    };
     std::uint64_t pixel_of_run = unit * kTileSide * kTileSide;
     for (int y = tile.top; y < tile.bottom; ++y)
-      for (int x = tile.left; x < tile.right && !stopped.load(std::memory_order_relaxed); ++x, ++pixel_of_run)
+      for (int x = tile.left; x < tile.right && !stopped.load(std::memory_order_relaxed); ++x, ++pixel_of_run) {
+        const EvenSet set(seed, pixel_of_run);
         for (std::uint32_t i = 0; i < samples; ++i) {
-          PathRandom random(seed, pixel_of_run * samples + i, pixel_of_run, i);
+          PathRandom random(set, pixel_of_run * samples + i, i);
           const Pair at = random.pair();
           const glm::vec3 on_line = rays.corner + (static_cast<float>(x) + at.u) * rays.right_step +
                                     (static_cast<float>(y) + at.v) * rays.down_step;
-          const auto seen = paths.look(paths.startOf(on_line, rays.sight), rays.sight, random);
-          for (int band = 0; band < band_count; ++band) {
-            const double once = double{seen.leaf_once[band]} + double{seen.other_once[band]};
-            const double radiance = once + double{seen.more[band]};
-            const std::size_t pixel = parts_->pixel(x, y, band);
-            tally.add(pixel, share * radiance);
-            tally.add(pixel + 1, share * once);
-            tally.add(parts_->tileMean(unit % groups(), band), share_of_tile * radiance);
-          }
+          packet.add(paths.startOf(on_line, rays.sight), random, x, y);
+          if (packet.full()) finish();
         }
+      }
+    finish();
   });
 }
 
@@ -165,7 +209,8 @@ CameraResult CameraJob::Parts::result(const TraceSums& sums, int band) const {
     for (int y = of.top; y < of.bottom; ++y)
       for (int x = of.left; x < of.right; ++x) {
         const Estimate radiance = sums.estimate(pixel(x, y, band), number);
-        const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.width) + static_cast<std::size_t>(x);
+        const std::size_t at =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.width) + static_cast<std::size_t>(x);
         result.radiance.values[2 * at] = static_cast<float>(radiance.value);
         result.radiance.values[2 * at + 1] = static_cast<float>(sums.estimate(pixel(x, y, band) + 1, number).value);
         result.standard_error.values[at] = static_cast<float>(radiance.standard_error);
@@ -177,7 +222,8 @@ CameraResult CameraJob::Parts::result(const TraceSums& sums, int band) const {
 
 std::vector<CameraResult> CameraJob::results(const TraceSums& sums) const {
   std::vector<CameraResult> results;
-  for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band) results.push_back(parts_->result(sums, band));
+  for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band)
+    results.push_back(parts_->result(sums, band));
   return results;
 }
 
@@ -208,18 +254,21 @@ UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSum
     const std::uint64_t done = sums.units(number);
     // At most twice what there is, as what is known of the noise is noisy itself.
     const double least = double{kLeastUnitsOfTile}, twice = std::max(least, 2. * static_cast<double>(done));
-    const auto goal = static_cast<std::uint64_t>(std::min({std::ceil(wanted[number]), twice, static_cast<double>(most)}));
+    const auto goal =
+        static_cast<std::uint64_t>(std::min({std::ceil(wanted[number]), twice, static_cast<double>(most)}));
     for (std::uint64_t pass = done; pass < goal; ++pass) units.add(pass * groups() + number);
   }
   return units;
 }
 
 int samplesPerUnit(std::uint64_t samples) {
-  return static_cast<int>(std::clamp<std::uint64_t>(std::bit_floor(samples / kLeastUnitsOfTile), 1, kMostSamplesPerUnit));
+  return static_cast<int>(
+      std::clamp<std::uint64_t>(std::bit_floor(samples / kLeastUnitsOfTile), 1, kMostSamplesPerUnit));
 }
 
-std::vector<CameraResult> traceCameraBands(const RayScene& scene, const std::vector<TraceLight>& bands, const PixelRays& rays,
-                                      float ground_height, const TraceEffort& effort, const Progress& progress) {
+std::vector<CameraResult> traceCameraBands(const RayScene& scene, const std::vector<TraceLight>& bands,
+                                           const PixelRays& rays, float ground_height, const TraceEffort& effort,
+                                           const Progress& progress) {
   validate(effort);
   validate(rays);
   const Elapsed elapsed;

@@ -24,8 +24,8 @@ struct PixelRays {
 
 // Of one band.
 struct CameraResult {
-  Image radiance;        // channels "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr], and "single.Y":
-                         // what of it was scattered once
+  Image radiance;  // channels "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr], and "single.Y":
+                   // what of it was scattered once
   Image standard_error;  // channel "Y": of the radiance of each pixel
   Estimate mean;         // of all pixels
   std::uint64_t paths = 0;
@@ -33,8 +33,9 @@ struct CameraResult {
 };
 
 // (R2) Monte Carlo from the camera to the sun, with the sun sampled at every hit, before a black sky. A unit adds
-// `samples_per_unit` to each pixel of a square tile, evenly spread over the pixel. A ground plane without end (albedo > 0)
-// lies at `ground_height` [m] and is seen from above; under a periodic stand it must not lie above the bottom of the box.
+// `samples_per_unit` to each pixel of a square tile, evenly spread over the pixel. A ground plane without end (albedo >
+// 0) lies at `ground_height` [m] and is seen from above; under a periodic stand it must not lie above the bottom of the
+// box.
 class CameraJob final : public TraceJob {
  public:
   //   scene  must outlive the job
@@ -49,7 +50,7 @@ class CameraJob final : public TraceJob {
   void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const override;
 
   int samplesPerUnit() const;
-  std::uint64_t unitsOf(std::uint64_t samples) const;                // that add so many samples to each pixel
+  std::uint64_t unitsOf(std::uint64_t samples) const;              // that add so many samples to each pixel
   std::vector<CameraResult> results(const TraceSums& sums) const;  // of each band
   // What brings the root mean square standard error of the pixels, relative to the mean of the picture, to `target` in
   // each band: more units for the tiles that are noisier. Nothing when it is there, or at `most` units of each tile.
@@ -65,8 +66,9 @@ int samplesPerUnit(std::uint64_t samples);
 
 // The whole run in memory; `effort.paths` is rounded up to whole samples of each pixel. When `progress` ends it early,
 // the units done until then are the result, at least one; pixels without any are zero.
-std::vector<CameraResult> traceCameraBands(const RayScene& scene, const std::vector<TraceLight>& bands, const PixelRays& rays,
-                                      float ground_height, const TraceEffort& effort, const Progress& progress = {});
+std::vector<CameraResult> traceCameraBands(const RayScene& scene, const std::vector<TraceLight>& bands,
+                                           const PixelRays& rays, float ground_height, const TraceEffort& effort,
+                                           const Progress& progress = {});
 // The same for one band.
 CameraResult traceCamera(const RayScene& scene, const TraceLight& light, const PixelRays& rays, float ground_height,
                          const TraceEffort& effort, const Progress& progress = {});

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/elapsed.hpp"
 #include "core/require.hpp"
 #include "render/reference/detail/cosine_law.hpp"
 #include "render/reference/detail/identity_text.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/detail/scene_optics.hpp"
-#include "core/elapsed.hpp"
 #include "render/reference/detail/sunlit_faces.hpp"
 #include "render/reference/trace_run.hpp"
 
@@ -92,7 +92,8 @@ class ForwardPaths {
   // Subtracted in double precision, so that nothing gets lost in rounding.
   void keep(std::size_t first, const BandLanes<N>& arriving, const BandLanes<N>& leaving) {
     for (std::size_t band = 0; band < layout_.bands; ++band)
-      tally_.add(first + band, share_ * (double{arriving[static_cast<int>(band)]} - double{leaving[static_cast<int>(band)]}));
+      tally_.add(first + band,
+                 share_ * (double{arriving[static_cast<int>(band)]} - double{leaving[static_cast<int>(band)]}));
   }
 
   // The bins of all bands, one after the other.
@@ -170,8 +171,9 @@ void ForwardJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally,
   parts_->optics.visit([&](const auto& optics) {
     ForwardPaths paths(parts_->scene, parts_->faces, parts_->bands.front().sun, optics, parts_->layout,
                        1. / static_cast<double>(count), tally);
+    const EvenSet set(seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
-      PathRandom random(seed, unit * count + i, unit, static_cast<std::uint32_t>(i));
+      PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));
       paths.trace(random);
     }
   });
@@ -225,7 +227,7 @@ double ForwardJob::relativeError(const TraceSums& sums) const {
 }
 
 std::vector<ForwardResult> traceForwardBands(const RayScene& scene, const std::vector<TraceLight>& bands,
-                                        const TraceEffort& effort, const Progress& progress) {
+                                             const TraceEffort& effort, const Progress& progress) {
   validate(effort);
   const Elapsed elapsed;
   const std::uint64_t per_unit = pathsPerUnit(effort.paths);

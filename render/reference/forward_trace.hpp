@@ -16,9 +16,9 @@ namespace sunfleck {
 
 // Where one band of the sun's light ends up, as shares of the incident flux: the sunlight that enters the traced box. A
 // periodic stand is entered through the horizontal top of one period; a stand without period through the sunlit faces
-// of the box of its trees, the top and, unless the sun is overhead, the sides. Light that leaves downward arrives at the
-// ground, wherever it leaves the box; light that leaves upward is reflected. So
-// reflected + absorbed_leaves + absorbed_wood + absorbed_ground = 1.
+// of the box of its trees, the top and, unless the sun is overhead, the sides. Light that leaves downward arrives at
+// the ground, wherever it leaves the box; light that leaves upward is reflected. So reflected + absorbed_leaves +
+// absorbed_wood + absorbed_ground = 1.
 struct ForwardResult {
   Estimate reflected;
   Estimate absorbed_leaves, absorbed_wood;
@@ -30,15 +30,16 @@ struct ForwardResult {
   // facing the sun; the mean over the stand's trees of the kind.
   std::vector<double> leaf_irradiance;      // E, both sides together [1]
   std::vector<double> leaf_standard_error;  // of E [1]
-  std::vector<Estimate> leaf_front, leaf_back;  // of the side that its triangles' corners turn about counter-clockwise ...
-  std::vector<Estimate> leaf_direct;            // both sides, of light that met nothing before
-  std::uint64_t paths = 0;                      // traced; fewer than asked for when ended early
-  double seconds = 0.;                          // wall time
-  double cpu_seconds = 0.;                      // of all threads of the process
+  std::vector<Estimate> leaf_front,
+      leaf_back;                      // of the side that its triangles' corners turn about counter-clockwise ...
+  std::vector<Estimate> leaf_direct;  // both sides, of light that met nothing before
+  std::uint64_t paths = 0;            // traced; fewer than asked for when ended early
+  double seconds = 0.;                // wall time
+  double cpu_seconds = 0.;            // of all threads of the process
 };
 
-// (R1) Monte Carlo from the sun to the leaves, all bands on one path. Leaves scatter by Lambert's law on both sides, wood
-// and ground on one. The ground lies at the bottom of the box.
+// (R1) Monte Carlo from the sun to the leaves, all bands on one path. Leaves scatter by Lambert's law on both sides,
+// wood and ground on one. The ground lies at the bottom of the box.
 class ForwardJob final : public TraceJob {
  public:
   //   scene  must outlive the job
@@ -63,7 +64,7 @@ class ForwardJob final : public TraceJob {
 
 // The whole run in memory. When `progress` ends it early, the units done until then are the result, at least one.
 std::vector<ForwardResult> traceForwardBands(const RayScene& scene, const std::vector<TraceLight>& bands,
-                                        const TraceEffort& effort, const Progress& progress = {});
+                                             const TraceEffort& effort, const Progress& progress = {});
 // The same for one band.
 ForwardResult traceForward(const RayScene& scene, const TraceLight& light, const TraceEffort& effort,
                            const Progress& progress = {});

@@ -28,8 +28,8 @@ class OrderTable {
   Estimate beyond() const { return shares_.back(); }  // of higher orders
 
   // The whole for other leaves than those the light met, `traced`. What was scattered more than kMostOrder times is
-  // taken to fall off on the whole as the last orders do: it adds to the standard error. Throws InvalidInput when `leaf`
-  // reflects or passes light that `traced` did not.
+  // taken to fall off on the whole as the last orders do: it adds to the standard error. Throws InvalidInput when
+  // `leaf` reflects or passes light that `traced` did not.
   Estimate reweighted(const LeafOptics& traced, const LeafOptics& leaf) const;
 
  private:

@@ -73,6 +73,21 @@ void set(RTCRay& ray, const glm::vec3& from, const glm::vec3& direction, float r
   ray.flags = 0;
 }
 
+void set(RTCRay16& rays, std::size_t i, const glm::vec3& from, const glm::vec3& direction, float reach) {
+  rays.org_x[i] = from.x;
+  rays.org_y[i] = from.y;
+  rays.org_z[i] = from.z;
+  rays.dir_x[i] = direction.x;
+  rays.dir_y[i] = direction.y;
+  rays.dir_z[i] = direction.z;
+  rays.tnear[i] = 0.f;
+  rays.tfar[i] = reach;
+  rays.time[i] = 0.f;
+  rays.mask[i] = ~0u;
+  rays.id[i] = 0;
+  rays.flags[i] = 0;
+}
+
 RTCRayHit rayFrom(const glm::vec3& from, const glm::vec3& direction, float reach) {
   RTCRayHit ray;
   set(ray.ray, from, direction, reach);
@@ -170,14 +185,14 @@ RTCScene RayScene::Geometry::countingScene() const {
 }
 
 // The point is put back on its triangle's plane, as travel along a long ray rounds more than a plane does.
-Hit RayScene::Geometry::describe(const RTCRayHit& ray) const {
-  const bool leaf = ray.hit.geomID == kLeaves;
-  const glm::vec3 direction(ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z);
-  const glm::vec3 travelled = glm::vec3(ray.ray.org_x, ray.ray.org_y, ray.ray.org_z) + ray.ray.tfar * direction;
-  const bool alone = ray.hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
-  const Copy& copy = copies[alone ? 0 : ray.hit.instID[0]];
+Hit RayScene::Geometry::describe(const RTCHit& hit, const glm::vec3& from, const glm::vec3& direction,
+                                 float distance_along) const {
+  const bool leaf = hit.geomID == kLeaves;
+  const glm::vec3 travelled = from + distance_along * direction;
+  const bool alone = hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
+  const Copy& copy = copies[alone ? 0 : hit.instID[0]];
   const Prototype& prototype = prototypes[copy.kind];
-  const glm::vec4& plane = prototype.planes[ray.hit.primID + (leaf ? 0 : prototype.leaf_of_triangle.size())];
+  const glm::vec4& plane = prototype.planes[hit.primID + (leaf ? 0 : prototype.leaf_of_triangle.size())];
   glm::vec3 normal(plane);
   float distance = plane.w;
   if (!alone) {
@@ -187,7 +202,7 @@ Hit RayScene::Geometry::describe(const RTCRayHit& ray) const {
   const bool front = glm::dot(normal, direction) <= 0.f;
   return {.surface = leaf ? Surface::leaf : Surface::wood,
           .kind = copy.kind,
-          .leaf = leaf ? prototype.leaf_of_triangle[ray.hit.primID] : 0,
+          .leaf = leaf ? prototype.leaf_of_triangle[hit.primID] : 0,
           .position = travelled - (glm::dot(normal, travelled) - distance) * normal,
           .front = front,
           .normal = front ? normal : -normal};
@@ -198,7 +213,8 @@ Hit RayScene::Geometry::closest(const glm::vec3& from, const glm::vec3& directio
   if (period) return closestInPeriods(from, direction, coherence);
   RTCRayHit ray = rayFrom(from, direction, reach);
   closestHit(scenes.root(), ray, coherence);
-  return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? Hit{} : describe(ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return describe(ray.hit, from, direction, ray.ray.tfar);
 }
 
 bool RayScene::Geometry::blocked(const glm::vec3& from, const glm::vec3& direction) const {
@@ -207,6 +223,49 @@ bool RayScene::Geometry::blocked(const glm::vec3& from, const glm::vec3& directi
   set(ray, from, direction, kInfinity);
   anyHit(scenes.root(), ray);
   return ray.tfar < 0.f;
+}
+
+void RayScene::Geometry::closest(std::span<const glm::vec3> from, const glm::vec3& direction,
+                                 std::span<const float> reach, std::span<Hit> hits) const {
+  if (period) {
+    for (std::size_t i = 0; i < from.size(); ++i) hits[i] = closest(from[i], direction, Coherence::coherent, reach[i]);
+    return;
+  }
+  alignas(64) std::array<int, kPacket> valid{};
+  RTCRayHit16 rays;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    valid[i] = -1;
+    set(rays.ray, i, from[i], direction, reach[i]);
+    rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  closestHits(valid.data(), scenes.root(), rays);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    hits[i] = {};
+    if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    RTCHit hit;
+    hit.geomID = rays.hit.geomID[i];
+    hit.primID = rays.hit.primID[i];
+    hit.instID[0] = rays.hit.instID[0][i];
+    hits[i] = describe(hit, from[i], direction, rays.ray.tfar[i]);
+  }
+}
+
+void RayScene::Geometry::blocked(std::span<const glm::vec3> from, const glm::vec3& direction,
+                                 std::span<bool> is_blocked) const {
+  if (period) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (!is_blocked[i]) is_blocked[i] = blocked(from[i], direction);
+    return;
+  }
+  alignas(64) std::array<int, kPacket> valid{};
+  RTCRay16 rays;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    valid[i] = is_blocked[i] ? 0 : -1;
+    set(rays, i, from[i], direction, kInfinity);
+  }
+  anyHits(valid.data(), scenes.root(), rays);
+  for (std::size_t i = 0; i < from.size(); ++i) is_blocked[i] = is_blocked[i] || rays.tfar[i] < 0.f;
 }
 
 glm::vec3 RayScene::Geometry::wrapped(glm::vec3 point) const {
@@ -257,7 +316,7 @@ Hit RayScene::Geometry::closestInPeriods(glm::vec3 point, const glm::vec3& direc
     RTCRayHit ray = rayFrom(from, direction, length);
     closestHit(scenes.root(), ray, coherence);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit = describe(ray);
+    hit = describe(ray.hit, from, direction, ray.ray.tfar);
     return true;
   });
   return hit;

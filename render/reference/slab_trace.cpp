@@ -6,9 +6,9 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
+#include "core/elapsed.hpp"
 #include "core/require.hpp"
 #include "render/reference/detail/absorption.hpp"
-#include "core/elapsed.hpp"
 #include "render/reference/trace_job.hpp"
 #include "render/reference/trace_run.hpp"
 

@@ -185,7 +185,8 @@ void addPart(TraceSections& whole, const TraceSections& part, const fs::path& pa
 std::map<std::uint64_t, UnitRanges> missingUnits(const TraceSection& section) {
   std::map<std::uint64_t, UnitRanges> missing;
   for (const auto& [seed, units] : section.sums.done())
-    if (UnitRanges left = UnitRanges(0, section.asked).without(units); left.count() > 0) missing[seed] = std::move(left);
+    if (UnitRanges left = UnitRanges(0, section.asked).without(units); left.count() > 0)
+      missing[seed] = std::move(left);
   return missing;
 }
 

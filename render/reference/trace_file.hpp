@@ -31,8 +31,8 @@ void writeTraceFile(const std::filesystem::path& path, const TraceSections& sect
 // Throws InvalidInput("<path>: ...") on a file that is none, is damaged or of another version of the format.
 TraceSections readTraceFile(const std::filesystem::path& path);
 
-// Adds what `part`, read from `path`, has found to `whole`. Throws InvalidInput when it is of another run or holds units
-// that are there already.
+// Adds what `part`, read from `path`, has found to `whole`. Throws InvalidInput when it is of another run or holds
+// units that are there already.
 void addPart(TraceSections& whole, const TraceSections& part, const std::filesystem::path& path);
 
 // Units [0, asked) that a section has not, of the seeds that it has some of.

@@ -12,8 +12,8 @@ namespace sunfleck {
 
 using Stopped = std::atomic<bool>;
 
-// What tells two runs apart, by name: the program's version, the scene, the sun, the optics, the size of a unit. Sums of
-// runs that differ in any of it are never added.
+// What tells two runs apart, by name: the program's version, the scene, the sun, the optics, the size of a unit. Sums
+// of runs that differ in any of it are never added.
 using TraceIdentity = std::map<std::string, std::string>;
 
 // A Monte Carlo estimate cut into units of equal size. A unit's random numbers follow from the seed and its number, so

@@ -15,8 +15,8 @@ struct TraceUnits {
   int threads = 0;  // at most; 0: all cores
 };
 
-// Computes those of `units` that `sums` has not yet, side by side, and adds them. `progress` is told after each how much
-// of the wanted is there, when nobody adds to the sums; when it answers false, what is being computed is dropped.
+// Computes those of `units` that `sums` has not yet, side by side, and adds them. `progress` is told after each how
+// much of the wanted is there, when nobody adds to the sums; when it answers false, what is being computed is dropped.
 void runUnits(const TraceJob& job, const TraceUnits& units, TraceSums& sums, const Progress& progress = {});
 
 // Part `number` of `parts` of the units [0, count), number from 0: what one of several machines computes.

@@ -4,9 +4,9 @@
 
 namespace sunfleck::detail {
 
-// Light of one band meets a particle of this albedo [1]: takes the absorbed share off `weight`, adds it to `absorbed`, and
-// answers whether the path goes on. A heavy path loses its share for certain; a light one loses all of itself with the
-// share's probability. Both are unbiased, and in both no light is made or lost: weight + absorbed stay the same.
+// Light of one band meets a particle of this albedo [1]: takes the absorbed share off `weight`, adds it to `absorbed`,
+// and answers whether the path goes on. A heavy path loses its share for certain; a light one loses all of itself with
+// the share's probability. Both are unbiased, and in both no light is made or lost: weight + absorbed stay the same.
 inline bool scatters(double albedo, double& weight, double& absorbed, PathRandom& random) {
   if (weight >= double{kRouletteWeight} && albedo > 0.) {
     absorbed += weight * (1. - albedo);

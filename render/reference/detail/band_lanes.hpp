@@ -9,6 +9,7 @@ namespace sunfleck::detail {
 // One number per band of light. All bands travel on one path: what tells them apart are these weights.
 template <int N>
 struct BandLanes {
+  static constexpr int kBands = N;
   alignas(N >= 4 ? 16 : 4) std::array<float, N> of_band{};
 
   static BandLanes all(float value) {

@@ -28,6 +28,16 @@ inline void closestHit(RTCScene scene, RTCRayHit& ray, Coherence coherence) {
 inline void anyHit(RTCScene scene, RTCRay& ray) {
   rtcOccluded1(scene, &ray);
 }
+inline void closestHits(const int* valid, RTCScene scene, RTCRayHit16& rays) {
+  RTCIntersectArguments arguments = intersectArguments(Coherence::coherent);
+  rtcIntersect16(valid, scene, &rays, &arguments);
+}
+inline void anyHits(const int* valid, RTCScene scene, RTCRay16& rays) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(valid, scene, &rays, &arguments);
+}
 inline void initialise(EmbreeContext& context) {
   rtcInitRayQueryContext(&context);
 }
@@ -55,6 +65,18 @@ inline void anyHit(RTCScene scene, RTCRay& ray) {
   EmbreeContext context;
   initialise(context);
   rtcOccluded1(scene, &context, &ray);
+}
+inline void closestHits(const int* valid, RTCScene scene, RTCRayHit16& rays) {
+  EmbreeContext context;
+  initialise(context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &context, &rays);
+}
+inline void anyHits(const int* valid, RTCScene scene, RTCRay16& rays) {
+  EmbreeContext context;
+  initialise(context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid, scene, &context, &rays);
 }
 inline void filterHits(RTCScene scene, RTCRayHit& ray, EmbreeContext& context, RTCFilterFunctionN filter) {
   context.filter = filter;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "render/reference/detail/cosine_law.hpp"
 #include "render/reference/detail/scattering.hpp"
@@ -30,32 +32,28 @@ class EyePaths {
         ground_(optics.ground().reflectance.largest() > 0.f ? ground : -kInfinity),
         reach_(0.5f * glm::length(scene.box.size()) + 8.f * scene.lift) {}
 
-  // What is seen from a point on along `direction`.
-  Seen<N> look(glm::vec3 from, glm::vec3 direction, PathRandom& random) const {
-    Seen<N> seen;
-    BandLanes<N> weight = BandLanes<N>::all(1.f);
-    for (int scatterings = 0; scatterings < kMostScatterings; ++scatterings) {
-      const float to_ground = toGround(from, direction);
-      Hit hit =
-          scene_.closest(from, direction, scatterings == 0 ? Coherence::coherent : Coherence::incoherent, to_ground);
-      if (hit.surface == Surface::none) {
-        if (to_ground == kInfinity) break;
-        hit.position = from + to_ground * direction;
-        hit.position.z = ground_;
-        hit.normal = {0.f, 0.f, 1.f};
-      }
-      const SurfaceOptics<N>& surface = optics_.of(hit);
-      BandLanes<N>& part = scatterings > 0                ? seen.more
-                           : hit.surface == Surface::leaf ? seen.leaf_once
-                                                          : seen.other_once;
-      addSun(hit, surface, weight, part);
-      const Fate fate = scatter(surface, weight, random);
-      if (fate == Fate::absorbed) break;
-      const glm::vec3 side = fate == Fate::passed ? -hit.normal : hit.normal;
-      from = scene_.leave(hit.position, side);
-      direction = lambertDirection(side, random);
+  // What is seen along parallel lines of sight from these points, at most RayScene::Geometry::kPacket.
+  void look(std::span<const glm::vec3> from, const Direction& sight, std::span<PathRandom> random,
+            std::span<Seen<N>> seen) const {
+    constexpr std::size_t kPacket = RayScene::Geometry::kPacket;
+    const std::size_t count = from.size();
+    std::array<float, kPacket> to_ground;
+    std::array<Hit, kPacket> hits;
+    std::array<glm::vec3, kPacket> lit;  // where light from the sun would come in
+    std::array<bool, kPacket> dark;
+    for (std::size_t i = 0; i < count; ++i) to_ground[i] = toGround(from[i], sight);
+    scene_.closest(from, sight, std::span(to_ground).first(count), std::span(hits).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      seen[i] = {};
+      dark[i] = !meets(hits[i], from[i], sight, to_ground[i]) || !sendsSun(hits[i], lit[i]);
     }
-    return seen;
+    scene_.blocked(std::span(lit).first(count), to_sun_, std::span(dark).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!meets(hits[i], from[i], sight, to_ground[i])) continue;
+      const BandLanes<N> weight = BandLanes<N>::all(1.f);
+      if (!dark[i]) addSun(hits[i], weight, hits[i].surface == Surface::leaf ? seen[i].leaf_once : seen[i].other_once);
+      goOn(hits[i], weight, random[i], seen[i].more);
+    }
   }
 
   // Where a line of sight through a point starts: right before the box, where positions are exact, but before it meets
@@ -76,14 +74,49 @@ class EyePaths {
     return (ground_ - from.z) / direction.z;
   }
 
-  // Adds what a surface sends on from the sun to the side its normal points to.
-  void addSun(const Hit& hit, const SurfaceOptics<N>& surface, const BandLanes<N>& weight, BandLanes<N>& seen) const {
+  // Whether a ray meets something; where nothing else is, that may be the ground, which `hit` then becomes.
+  bool meets(Hit& hit, const glm::vec3& from, const glm::vec3& direction, float to_ground) const {
+    if (hit.surface != Surface::none) return true;
+    if (to_ground == kInfinity) return false;
+    hit.position = from + to_ground * direction;
+    hit.position.z = ground_;
+    hit.normal = {0.f, 0.f, 1.f};
+    return true;
+  }
+
+  // Follows a path on from where it met something and adds what it sees there.
+  void goOn(Hit hit, BandLanes<N> weight, PathRandom& random, BandLanes<N>& seen) const {
+    for (int scatterings = 1; scatterings < kMostScatterings; ++scatterings) {
+      const Fate fate = scatter(optics_.of(hit), weight, random);
+      if (fate == Fate::absorbed) return;
+      const glm::vec3 side = fate == Fate::passed ? -hit.normal : hit.normal;
+      const glm::vec3 from = scene_.leave(hit.position, side);
+      const glm::vec3 direction = lambertDirection(side, random);
+      const float to_ground = toGround(from, direction);
+      hit = scene_.closest(from, direction, Coherence::incoherent, to_ground);
+      if (!meets(hit, from, direction, to_ground)) return;
+      glm::vec3 lit;
+      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, weight, seen);
+    }
+  }
+
+  // What a surface sends on of the sun's light to the side its normal points to.
+  const BandLanes<N>& shareOfSun(const Hit& hit) const {
+    const SurfaceOptics<N>& surface = optics_.of(hit);
+    return glm::dot(hit.normal, to_sun_) > 0.f ? surface.reflectance : surface.transmittance;
+  }
+
+  // Whether that is anything, and where the light would come in.
+  bool sendsSun(const Hit& hit, glm::vec3& lit) const {
     const float cosine = glm::dot(hit.normal, to_sun_);
-    const BandLanes<N>& share = cosine > 0.f ? surface.reflectance : surface.transmittance;
-    if (share.largest() == 0.f || cosine == 0.f) return;
-    const glm::vec3 from = scene_.leave(hit.position, cosine > 0.f ? hit.normal : -hit.normal);
-    if (scene_.blocked(from, to_sun_)) return;
-    const float towards = std::abs(cosine) * std::numbers::inv_pi_v<float>;
+    if (cosine == 0.f || shareOfSun(hit).largest() == 0.f) return false;
+    lit = scene_.leave(hit.position, cosine > 0.f ? hit.normal : -hit.normal);
+    return true;
+  }
+
+  void addSun(const Hit& hit, const BandLanes<N>& weight, BandLanes<N>& seen) const {
+    const BandLanes<N>& share = shareOfSun(hit);
+    const float towards = std::abs(glm::dot(hit.normal, to_sun_)) * std::numbers::inv_pi_v<float>;
     for (int band = 0; band < N; ++band) seen[band] += towards * weight[band] * share[band];
   }
 

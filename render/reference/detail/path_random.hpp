@@ -14,22 +14,31 @@ struct Pair {
   float u = 0.f, v = 0.f;
 };
 
+// A set of paths whose first random numbers are points of one Owen-scrambled Sobol' sequence: together they fill the
+// square more evenly than chance does. Sets of other numbers are scrambled independently.
+struct EvenSet {
+  EvenSet(std::uint64_t of_seed, std::uint64_t number) : seed(of_seed) {
+    const auto random =
+        r123::Philox4x32()({{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), 0, kOfSets}},
+                           {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}});
+    scramble = {random[0], random[1], random[2]};
+  }
+  static constexpr std::uint32_t kOfSets = 1;  // tells its numbers from those of paths
+
+  std::uint64_t seed;
+  std::array<std::uint32_t, 3> scramble;
+};
+
 // The random numbers of one path, made by counting (Philox 4x32-10 of Salmon et al. 2011): they follow from the seed,
 // the path's number and how many were taken before, so that any thread, machine or later run can trace the path and
-// gets the same. The first pairs come from an Owen-scrambled Sobol' sequence that the paths of a set share: they fill
-// the square more evenly than chance does, and another `set` is scrambled independently.
+// gets the same.
 class PathRandom {
  public:
-  // `path`: its number among all of the seed; it is the `index`-th of its set.
-  PathRandom(std::uint64_t seed, std::uint64_t path, std::uint64_t set, std::uint32_t index)
-      : key_{{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}},
-        counter_{{static_cast<std::uint32_t>(path), static_cast<std::uint32_t>(path >> 32), 0, kOfPath}},
-        index_(index) {
-    const auto scramble = r123::Philox4x32()(
-        {{static_cast<std::uint32_t>(set), static_cast<std::uint32_t>(set >> 32), 0, kOfSet}}, key_);
-    scramble_ = {scramble[0], scramble[1], scramble[2]};
-  }
-  PathRandom(std::uint64_t seed, std::uint64_t path) : PathRandom(seed, path, path, 0) { even_pairs_ = kEvenPairs; }
+  // `path`: its number among all of the seed; it is the `index`-th of `set`.
+  PathRandom(const EvenSet& set, std::uint64_t path, std::uint32_t index)
+      : PathRandom(set.seed, path, set.scramble, index, 0) {}
+  // A path on its own.
+  PathRandom(std::uint64_t seed, std::uint64_t path) : PathRandom(seed, path, {}, 0, kEvenPairs) {}
 
   std::uint32_t bits() {
     if (taken_ == 4) {
@@ -58,15 +67,22 @@ class PathRandom {
   }
 
  private:
-  static constexpr std::uint32_t kOfPath = 0, kOfSet = 1;
   static constexpr std::uint32_t kEvenPairs = 3;
 
+  PathRandom(std::uint64_t seed, std::uint64_t path, const std::array<std::uint32_t, 3>& scramble, std::uint32_t index,
+             std::uint32_t even_pairs)
+      : key_{{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}},
+        counter_{{static_cast<std::uint32_t>(path), static_cast<std::uint32_t>(path >> 32), 0, 0}},
+        index_(index),
+        scramble_(scramble),
+        even_pairs_(even_pairs) {}
+
   r123::Philox4x32::key_type key_;
-  r123::Philox4x32::ctr_type counter_, block_{};
+  r123::Philox4x32::ctr_type counter_, block_;
   unsigned taken_ = 4;
   std::uint32_t index_;
   std::array<std::uint32_t, 3> scramble_;
-  std::uint32_t even_pairs_ = 0;  // taken
+  std::uint32_t even_pairs_;  // taken
 };
 
 }  // namespace sunfleck::detail

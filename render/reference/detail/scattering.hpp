@@ -19,9 +19,9 @@ struct SurfaceOptics {
 
 enum class Fate { absorbed, reflected, passed };
 
-// What becomes of a path that arrives with `weight`: which side it leaves by is drawn for all bands at once, by what they
-// send there together, and the weights make up for it; a light path goes on by chance. Unbiased in every band. Of an
-// absorbed path the weight means nothing.
+// What becomes of a path that arrives with `weight`: which side it leaves by is drawn for all bands at once, by what
+// they send there together, and the weights make up for it; a light path goes on by chance. Unbiased in every band. Of
+// an absorbed path the weight means nothing.
 template <int N>
 Fate scatter(const SurfaceOptics<N>& optics, BandLanes<N>& weight, PathRandom& random) {
   const float reflected = dot(weight, optics.reflectance), passed = dot(weight, optics.transmittance);

@@ -71,6 +71,13 @@ struct RayScene::Geometry {
   // Whether anything stands on that way.
   bool blocked(const glm::vec3& from, const glm::vec3& direction) const;
 
+  // The same for up to kPacket parallel rays at once, which is much faster where they lie side by side.
+  static constexpr std::size_t kPacket = 16;
+  void closest(std::span<const glm::vec3> from, const glm::vec3& direction, std::span<const float> reach,
+               std::span<detail::Hit> hits) const;
+  // `blocked` of rays that are so already is not asked for.
+  void blocked(std::span<const glm::vec3> from, const glm::vec3& direction, std::span<bool> blocked) const;
+
   // Start of a ray that leaves a surface on the side `normal` points to. A hit lies on its triangle's plane to within
   // about one rounding step of the largest coordinate, so a lift of eight steps puts it safely on the right side: no
   // ray meets again the flat leaf it leaves, be it one triangle or many. The lift is 1 um in a tree of 1 m and 12 um in
@@ -102,7 +109,7 @@ struct RayScene::Geometry {
  private:
   void checkEmbree() const;  // throws std::runtime_error if Embree has reported an error
   detail::Scenes commit(std::vector<detail::EmbreeScene> made, RTCSceneFlags flags) const;
-  detail::Hit describe(const RTCRayHit& ray) const;
+  detail::Hit describe(const RTCHit& hit, const glm::vec3& from, const glm::vec3& direction, float distance) const;
   detail::Hit closestInPeriods(glm::vec3 point, const glm::vec3& direction, detail::Coherence coherence) const;
   bool blockedInPeriods(glm::vec3 point, const glm::vec3& direction) const;
   bool enterLayer(glm::vec3& point, const glm::vec3& direction) const;
