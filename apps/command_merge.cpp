@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
-#include "render/reference/trace_file.hpp"
+#include "render/reference/trace_store.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -27,14 +28,21 @@ std::string textOf(const UnitRanges& units) {
 
 int runMerge(const MergeOptions& options, const RunOptions& run) {
   requireNamed(options.output, ".trace");
-  TraceSections whole;
+  const TraceLock lock(options.output);
+  TraceFile whole;
   for (const std::string& file : options.files) addPart(whole, readTraceFile(file), file);
   writeTraceFile(options.output, whole);
 
   nlohmann::ordered_json json;
-  for (const TraceSection& section : whole) {
+  for (const TraceSection& section : whole.sections) {
     nlohmann::ordered_json missing = nlohmann::ordered_json::array();
-    if (!run.json) fmt::print("{}: {} of {} units\n", section.name, section.sums.units(), section.asked);
+    if (!run.json) {
+      fmt::print("{}: {} units", section.name, section.sums.units());
+      for (const auto& [seed, units] : section.sums.done())
+        fmt::print(", {} of seed {}{}", units.count(), seed,
+                   section.asked > 0 ? fmt::format(" of {} asked for", section.asked) : "");
+      fmt::print("\n");
+    }
     for (const auto& [seed, units] : missingUnits(section)) {
       missing.push_back({{"seed", seed}, {"units", units.ranges()}});
       if (!run.json) fmt::print("  missing of seed {}: {}\n", seed, textOf(units));
@@ -45,7 +53,8 @@ int runMerge(const MergeOptions& options, const RunOptions& run) {
   if (run.json)
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   else
-    fmt::print("wrote {}; sunfleck trace SCENE --checkpoint {} tells its results\n", options.output, options.output);
+    fmt::print("wrote {}: sunfleck trace with --checkpoint and the options of the parts goes on from it\n",
+               options.output);
   return 0;
 }
 

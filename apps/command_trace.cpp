@@ -28,13 +28,15 @@
 namespace sunfleck::apps {
 namespace {
 
-// A picture that is to reach an error stops here at the latest.
+constexpr double kPaths = 4e6;
+// A run that is to reach an error stops here at the latest.
+constexpr double kMostPaths = 1e15;
 constexpr std::uint64_t kMostTileUnits = 1'000'000;
 
 struct TraceOptions {
   SceneOptions scene;
   CameraOptions camera;
-  double paths = 4e6;
+  std::optional<double> paths;  // 4e6, or without end where there is a target
   int samples = 64;
   int band = 0;
   float exposure = kExposure;
@@ -106,6 +108,7 @@ class TraceRun {
         scene_(scene),
         extent_(extentOf(options)),
         rays_(meshes(scene), scene.stand, !options.without_wood) {
+    if (!options.other_leaf.empty()) traced_leaf_ = leafOfAll(scene, options);
     for (int band = 0; band < kBands; ++band)
       if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
     if (!options.checkpoint.empty())
@@ -113,18 +116,19 @@ class TraceRun {
   }
 
   void light() {
-    const auto paths = static_cast<std::uint64_t>(options_.paths);
+    const auto paths = static_cast<std::uint64_t>(options_.paths.value_or(extent_.target > 0. ? kMostPaths : kPaths));
     const std::uint64_t per_unit = unitSize(store_.identity("light"), "paths per unit", pathsPerUnit(paths));
     const ForwardJob job(rays_, bands_, per_unit);
     TraceSection& section = store_.section("light", job);
     const std::uint64_t units = unitsOf(paths, per_unit);
-    if (extent_.target == 0.) section.asked = units;
+    section.asked = extent_.target == 0. ? units : 0;
     const TraceGoal goal = extent_.target > 0.
                                ? until(
                                      extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
                                : allOf(partOf(units, extent_.part, extent_.parts));
     const Spent spent = work(goal, job, section, "tracing light");
     if (section.sums.units() == 0) return;
+    if (extent_.target > 0.) tellTarget(job.relativeError(section.sums) <= extent_.target);
 
     const std::vector<ForwardResult> results = job.results(section.sums);
     const ForwardResult& first = results.front();
@@ -155,17 +159,22 @@ class TraceRun {
     const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit));
     TraceSection& section = store_.section("picture", job);
     TraceGoal goal = allOf(partOf(job.unitsOf(samples), extent_.part, extent_.parts));
-    if (extent_.target == 0.) section.asked = job.unitsOf(samples);
+    section.asked = extent_.target == 0. ? job.unitsOf(samples) : 0;
     if (extent_.target > 0.)
-      goal = {.next = [&](const auto& sums) { return job.unitsFor(extent_.target, kMostTileUnits, sums); },
-              .decides_by_findings = true};
+      goal = {.next = [&](const auto& sums,
+                          std::uint64_t seed) { return job.unitsFor(extent_.target, kMostTileUnits, sums, seed); },
+              .name = fmt::format("picture error {}", extent_.target)};
     const Spent spent = work(goal, job, section, "tracing the picture");
     if (section.sums.units() == 0) return;
 
-    const CameraResult result = std::move(job.results(section.sums).front());
-    if (!options_.picture.empty()) writeImage(options_.picture, result.radiance, options_.exposure);
+    if (extent_.target > 0.)
+      tellTarget(job.unitsFor(extent_.target, kMostTileUnits, section.sums, run_.seed).count() == 0);
+    const std::vector<CameraResult> results = job.results(section.sums);
+    const CameraResult& result = results.front();
+    if (!options_.picture.empty())
+      writeImage(options_.picture, options_.all_bands ? colours(results) : result.radiance, options_.exposure);
     json_["image_mean"] = result.mean.value;
-    json_["image_mean_se"] = known(result.mean.standard_error);
+    json_["image_mean_se"] = result.mean.standard_error;
     json_["image_paths"] = result.paths;
     json_["image_cpu_seconds"] = spent.cpu_seconds;
     if (run_.json) return;
@@ -175,7 +184,7 @@ class TraceRun {
   }
 
   const nlohmann::ordered_json& json() const { return json_; }
-  bool whole() const { return whole_; }  // whether all was computed that had been asked for
+  const std::string& failure() const { return store_.failure(); }  // of the last write of the checkpoint
 
  private:
   struct Spent {
@@ -186,10 +195,11 @@ class TraceRun {
   Spent work(const TraceGoal& goal, const TraceJob& job, TraceSection& section, const std::string& label) {
     Spent spent{.units_before = section.sums.units()};
     TraceGoal timed = goal;
-    timed.seconds = extent_.seconds;
+    timed.seconds = extent_.seconds - begun_.seconds();
     const Elapsed elapsed;
-    whole_ =
-        pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet)) && whole_;
+    if (!pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet)) &&
+        !interrupted())
+      fmt::print(stderr, "sunfleck: {}: ended by --time before all was done\n", label);
     spent.seconds = elapsed.seconds();
     spent.cpu_seconds = elapsed.cpuSeconds();
     spent.units = section.sums.units();
@@ -205,14 +215,34 @@ class TraceRun {
     fmt::print(" in {:.1f} s, {:.2f} million per CPU second\n", spent.seconds, now * 1e-6 / spent.cpu_seconds);
   }
 
+  // The leaf that all kinds have in the band traced.
+  static LeafOptics leafOfAll(const Scene& scene, const TraceOptions& options) {
+    const auto band = static_cast<std::size_t>(options.band);
+    const LeafOptics traced = scene.kinds.front().leaf[band];
+    for (const TreeKind& kind : scene.kinds)
+      if (kind.leaf[band] != traced)
+        throw InvalidInput("--other-leaf: must be for scenes whose leaves are all alike in the band");
+    OrderTable().reweighted(traced, {.reflectance = options.other_leaf[0], .transmittance = options.other_leaf[1]});
+    return traced;
+  }
+
+  void tellTarget(bool reached) {
+    json_["target_reached"] = reached;
+    if (!reached) fmt::print(stderr, "sunfleck: the target of {} is not reached\n", options_.target);
+  }
+
+  // Of three bands, red, green and blue.
+  static Image colours(const std::vector<CameraResult>& bands) {
+    const Image& first = bands.front().radiance;
+    Image image{.width = first.width, .height = first.height, .channels = {"R", "G", "B"}, .values = {}};
+    for (std::size_t i = 0; i < first.values.size(); i += first.channels.size())
+      for (const CameraResult& band : bands) image.values.push_back(band.radiance.values[i]);
+    return image;
+  }
+
   void printOtherLeaf(const ForwardResult& result) {
     const LeafOptics leaf{.reflectance = options_.other_leaf[0], .transmittance = options_.other_leaf[1]};
-    const LeafOptics traced =
-        scene_.kinds.front().leaf[static_cast<std::size_t>(options_.all_bands ? 0 : options_.band)];
-    for (const TreeKind& kind : scene_.kinds)
-      for (const LeafOptics& of_band : kind.leaf)
-        if (of_band != traced && scene_.kinds.size() > 1)
-          throw InvalidInput("--other-leaf: must be for scenes whose leaves are all alike");
+    const LeafOptics traced = *traced_leaf_;
     const Estimate up = result.reflected_by_order.reweighted(traced, leaf);
     const Estimate down = result.arriving_ground_by_order.reweighted(traced, leaf);
     json_["other_leaf"] = {
@@ -232,7 +262,8 @@ class TraceRun {
   std::vector<TraceLight> bands_;
   TraceStore store_;
   nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
-  bool whole_ = true;
+  std::optional<LeafOptics> traced_leaf_;  // where --other-leaf asks for others
+  Elapsed begun_;
 };
 
 int runTrace(const TraceOptions& options, const RunOptions& run) {
@@ -249,8 +280,9 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (run.json) fmt::print("{}\n", trace.json().dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   for (const std::string& file : {options.leaves, options.picture, options.checkpoint})
     if (!file.empty() && !run.json && std::filesystem::exists(file)) fmt::print("wrote {}\n", file);
+  if (!trace.failure().empty()) fmt::print(stderr, "sunfleck: {}\n", trace.failure());
   if (interrupted()) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
-  return interrupted() ? 1 : 0;
+  return interrupted() || !trace.failure().empty() ? 1 : 0;
 }
 
 }  // namespace
@@ -262,8 +294,10 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
                  "Monte Carlo: where the sun's light ends up, leaf by leaf, with standard errors; and what a "
                  "camera sees of it");
   addSceneOptions(*command, trace->scene);
-  addCameraOptions(*command, trace->camera);
-  command->add_option("--paths", trace->paths, "Paths of light from the sun (default 4e6)")
+  addCameraOptions(*command, trace->camera, "--look-at");
+  command
+      ->add_option("--paths", trace->paths,
+                   "Paths of light from the sun (default 4e6; with --target, as many as it takes)")
       ->check(numberIn(64., 1e15, "in [64, 1e15]"));
   command->add_option("--samples", trace->samples, "Paths through each pixel of the picture (default 64)")
       ->transform(wholeNumberIn(1., 1e6, "a whole number, 1 to 1e6"));
@@ -274,13 +308,16 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   command->add_flag("--only-picture", trace->only_picture, "Trace the picture alone")->excludes("--leaves");
   command->add_option("--exposure", trace->exposure, "Factor from radiance to brightness in a .png (default 3)")
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
-  command->add_flag("--all-bands", trace->all_bands, "Trace the three bands of the scene on the same paths")
-      ->excludes("--band");
+  CLI::Option* all_bands =
+      command->add_flag("--all-bands", trace->all_bands, "Trace the three bands of the scene on the same paths")
+          ->excludes("--band");
   command
       ->add_option("--other-leaf", trace->other_leaf,
                    "Tell the shares also for leaves of this reflectance and transmittance, from the same paths")
       ->expected(2)
-      ->check(numberIn(0., 1., "in [0, 1]"));
+      ->check(numberIn(0., 1., "in [0, 1]"))
+      ->excludes(all_bands)
+      ->excludes("--only-picture");
   command->add_option(
       "--checkpoint", trace->checkpoint,
       "File of the run's state (.trace): written now and then and at the end. When it is there, the run "

@@ -63,9 +63,7 @@ Scene readScene(const SceneOptions& options) {
   return scene;
 }
 
-void addCameraOptions(CLI::App& command, CameraOptions& options) {
-  // The target of a trace is its error.
-  const std::string names = command.get_name() == "trace" ? "--look-at" : "--look-at,--target";
+void addCameraOptions(CLI::App& command, CameraOptions& options, const std::string& target_name) {
   const std::string group = "Camera (orthographic; shows the whole stand unless told otherwise)";
   command.add_option("--elevation", options.elevation_deg, "Height of the camera above the horizon, in degrees")
       ->check(numberIn(-90., 90., "in [-90, 90] degrees"))
@@ -73,7 +71,7 @@ void addCameraOptions(CLI::App& command, CameraOptions& options) {
   command.add_option("--azimuth", options.azimuth_deg, "Where the camera stands, in degrees from +x towards +y")
       ->check(numberIn(-360., 360., "in [-360, 360] degrees"))
       ->group(group);
-  command.add_option(names, options.target, "Point in the middle of the picture: x y z, in metres")
+  command.add_option(target_name, options.target, "Point in the middle of the picture: x y z, in metres")
       ->expected(3)
       ->check(numberIn(-1e6, 1e6, "in [-1e6, 1e6] m"))
       ->group(group);

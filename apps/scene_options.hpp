@@ -30,7 +30,8 @@ struct CameraOptions {
   std::optional<std::vector<int>> size;
   bool given() const { return elevation_deg || azimuth_deg || half_width || target || size; }
 };
-void addCameraOptions(CLI::App& command, CameraOptions& options);
+//   target_name  of the option for the point in the middle; where --target is an error, --look-at alone
+void addCameraOptions(CLI::App& command, CameraOptions& options, const std::string& target_name = "--look-at,--target");
 void apply(const CameraOptions& options, Scene& scene);
 
 }  // namespace sunfleck::apps

@@ -35,22 +35,18 @@ Json jsonOf(const OrderTable& table) {
   for (int order = 0; order <= last; ++order) {
     const Estimate share = table.ofOrder(order);
     values.push_back(share.value);
-    errors.push_back(known(share.standard_error));
+    errors.push_back(share.standard_error);
   }
   return {{"values", values}, {"standard_errors", errors}, {"beyond", table.beyond().value}};
 }
 
 }  // namespace
 
-Json known(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json jsonOf(const ForwardResult& result) {
   Json json = Json::object();
   for (const Row& row : rowsOf(result)) {
     json[row.name] = row.estimate.value;
-    json["standard_errors"][row.name] = known(row.estimate.standard_error);
+    json["standard_errors"][row.name] = row.estimate.standard_error;
   }
   json["orders"] = {{"reflected", jsonOf(result.reflected_by_order)},
                     {"arriving_ground", jsonOf(result.arriving_ground_by_order)}};

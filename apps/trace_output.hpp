@@ -9,9 +9,6 @@
 
 namespace sunfleck::apps {
 
-// JSON has no infinity: an error that is not known is null.
-nlohmann::ordered_json known(double value);
-
 // The shares of the light, their errors and their orders, of one band.
 nlohmann::ordered_json jsonOf(const ForwardResult& result);
 // The same as a table for people.

@@ -23,6 +23,16 @@ namespace {
   throw InvalidInput(path.string() + ": cannot be written: " + reason);
 }
 
+// Waits until a file, or the names in a folder, are on the disk; `path` is what the user calls it. Not every file system
+// can tell.
+void sync(const fs::path& file, const fs::path& path) {
+  const int opened = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (opened < 0) return;
+  const int status = fsync(opened), reason = errno;
+  close(opened);
+  if (status != 0 && reason != EINVAL && reason != ENOTSUP) cannotWrite(path, std::strerror(reason));
+}
+
 fs::path folderOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
@@ -91,8 +101,10 @@ void writeWhole(const fs::path& path, const std::function<void(const fs::path&)>
   const fs::path target = fs::is_symlink(path, failure) ? fs::weakly_canonical(path) : path;
   const Temporary temporary(temporaryFor(target));
   write(temporary.path);
+  sync(temporary.path, path);
   fs::rename(temporary.path, target, failure);
   if (failure) cannotWrite(path, failure.message());
+  sync(folderOf(target), path);
 }
 
 void writeWhole(const fs::path& path, std::string_view text) {

@@ -20,7 +20,7 @@
 
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
-#include "grid/detail/available_memory.hpp"
+#include "core/available_memory.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/detail/vdb_layout.hpp"
 #include "grid/detail/vdb_seal.hpp"

@@ -7,7 +7,7 @@
 
 #include "core/require.hpp"
 #include "core/stand.hpp"
-#include "grid/detail/available_memory.hpp"
+#include "core/available_memory.hpp"
 #include "grid/foliage_stand.hpp"
 #include "grid/neighbours.hpp"
 #include "spp/compensation.hpp"

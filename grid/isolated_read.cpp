@@ -27,7 +27,7 @@
 #include <utility>
 
 #include "core/require.hpp"
-#include "grid/detail/available_memory.hpp"
+#include "core/available_memory.hpp"
 
 namespace sunfleck {
 namespace fs = std::filesystem;

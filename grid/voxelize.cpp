@@ -18,7 +18,7 @@
 
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
-#include "grid/detail/available_memory.hpp"
+#include "core/available_memory.hpp"
 #include "grid/detail/block_visits.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/triangle_clipping.hpp"

@@ -1,4 +1,4 @@
-#include "grid/detail/available_memory.hpp"
+#include "core/available_memory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -216,8 +216,9 @@ TEST(R1_TraceRun, GoesOnFromItsFileToTheSameBits) {
   const Example example;
   const auto goal = [&](const TraceJob& job) {
     if (&job == &example.camera)
-      return TraceGoal{.next = [&](const TraceSums& sums) { return example.camera.unitsFor(0.2, 64, sums); },
-                       .decides_by_findings = true};
+      return TraceGoal{.next = [&](const TraceSums& sums,
+                                   std::uint64_t seed) { return example.camera.unitsFor(0.2, 64, sums, seed); },
+                       .name = "picture"};
     return until(
         0.02, [&](const TraceSums& sums) { return example.job.relativeError(sums); }, 400);
   };
@@ -253,16 +254,16 @@ TEST(R1_TraceRun, PutsPartsTogether) {
     pursue(allOf(std::move(units)), job, section, store, seed, 1);
     return readTraceFile(folder / name);
   };
-  TraceSections all = part("a.trace", 1, {0, 10}, example.job);
+  TraceFile all = part("a.trace", 1, {0, 10}, example.job);
   addPart(all, part("b.trace", 1, {20, 30}, example.job), "b.trace");
-  EXPECT_EQ(missingUnits(all.front()).at(1), UnitRanges(10, 20));
+  EXPECT_EQ(missingUnits(all.sections.front()).at(1), UnitRanges(10, 20));
   addPart(all, part("c.trace", 1, {10, 20}, example.job), "c.trace");
-  EXPECT_TRUE(missingUnits(all.front()).empty());
-  expectSame(all.front().sums, whole(example.job, 30));
+  EXPECT_TRUE(missingUnits(all.sections.front()).empty());
+  expectSame(all.sections.front().sums, whole(example.job, 30));
 
   addPart(all, part("d.trace", 7, {0, 30}, example.job), "d.trace");
-  EXPECT_EQ(all.front().sums.units(), 60u);
-  const auto refused = [&](const TraceSections& other) -> std::string {
+  EXPECT_EQ(all.sections.front().sums.units(), 60u);
+  const auto refused = [&](const TraceFile& other) -> std::string {
     try {
       addPart(all, other, "x.trace");
     } catch (const InvalidInput& e) {
@@ -274,7 +275,33 @@ TEST(R1_TraceRun, PutsPartsTogether) {
             "x.trace: units 15 to 29 of seed 1 of light: must not be in another file too");
   const ForwardJob larger(example.scene, example.bands, 128);
   EXPECT_EQ(refused(part("f.trace", 2, {0, 2}, larger)), "x.trace: made with paths per unit = 128: must be 64");
-  EXPECT_EQ(all.front().sums.units(), 60u);
+  TraceFile elsewhere = part("g.trace", 3, {0, 2}, example.job);
+  elsewhere.run["scene"] = "another";
+  elsewhere.sections.front().name = "picture";
+  EXPECT_EQ(refused(elsewhere), "x.trace: made with scene = another: must be example");
+  EXPECT_EQ(all.sections.front().sums.units(), 60u);
+}
+
+// Check that a goal is pursued whatever part of it is there already: holes in the middle are filled, and units of other
+// seeds count without being taken for its own.
+TEST(R1_TraceRun, FillsHolesTowardsAnError) {
+  const Example example;
+  TraceStore store;
+  TraceSection& section = store.section("picture", example.camera);
+  pursue(allOf({17, 30}), example.camera, section, store, 1, 1);
+  pursue(allOf({0, 9}), example.camera, section, store, 2, 1);
+  const TraceGoal goal{
+      .next = [&](const TraceSums& sums, std::uint64_t seed) { return example.camera.unitsFor(0.2, 64, sums, seed); },
+      .name = "picture"};
+  EXPECT_TRUE(pursue(goal, example.camera, section, store, 1, 2));
+  EXPECT_EQ(example.camera.unitsFor(0.2, 64, section.sums, 1).count(), 0u);
+  EXPECT_TRUE(section.sums.done(1).contains(0));
+  TraceSection& light = store.section("light", example.job);
+  pursue(allOf({5, 90}), example.job, light, store, 1, 1);
+  EXPECT_TRUE(pursue(until(
+                         0.01, [&](const TraceSums& sums) { return example.job.relativeError(sums); }, 400),
+                     example.job, light, store, 1, 2));
+  EXPECT_TRUE(light.sums.units() == 400 || example.job.relativeError(light.sums) <= 0.01);
 }
 
 // Check that a file with any byte changed or cut off is refused, that a foreign one is, and that a file is one
@@ -310,6 +337,8 @@ TEST(R1_TraceRun, RefusesWhatIsNotItsFile) {
   EXPECT_FALSE(readable(""));
   EXPECT_FALSE(readable("# Wavefront"));
   EXPECT_FALSE(readable(good + "x"));
-  TraceStore other(file, 1e9, {{"scene", "another"}});
-  EXPECT_THROW(other.section("light", example.job), InvalidInput);
+  EXPECT_THROW(TraceStore(file, 1e9, {{"scene", "another"}}), InvalidInput);
+  const ForwardJob other(example.scene, example.bands, 128);
+  TraceStore store(file, 1e9, {{"scene", "example"}});
+  EXPECT_THROW(store.section("light", other), InvalidInput);
 }

@@ -108,6 +108,8 @@ CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const
                      int samples_per_unit) {
   requireFitting(bands, scene);
   validate(rays);
+  require(samples_per_unit >= 1 && samples_per_unit <= kMostSamplesPerUnit, "samples per unit", samples_per_unit,
+          "from 1 to " + std::to_string(kMostSamplesPerUnit));
   require(std::isfinite(ground_height), "ground height", ground_height, "finite");
   const RayScene::Geometry& geometry = scene.geometry();
   const bool has_ground = std::any_of(bands.begin(), bands.end(), [](const auto& b) { return b.ground_albedo > 0.f; });
@@ -125,10 +127,6 @@ std::size_t CameraJob::bins() const {
 
 std::uint64_t CameraJob::groups() const {
   return parts_->tiles();
-}
-
-int CameraJob::samplesPerUnit() const {
-  return parts_->samples_per_unit;
 }
 
 std::uint64_t CameraJob::unitsOf(std::uint64_t samples) const {
@@ -229,7 +227,7 @@ std::vector<CameraResult> CameraJob::results(const TraceSums& sums) const {
 
 // With v the sum over a tile's pixels of the variance that a unit leaves, n units of each tile leave sum v / n. For the
 // least work, n goes as sqrt(v).
-UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSums& sums) const {
+UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSums& sums, std::uint64_t seed) const {
   const double pixels = double(parts_->rays.width) * double(parts_->rays.height);
   std::vector<double> wanted(groups(), double{kLeastUnitsOfTile});
   for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band) {
@@ -256,7 +254,13 @@ UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSum
     const double least = double{kLeastUnitsOfTile}, twice = std::max(least, 2. * static_cast<double>(done));
     const auto goal =
         static_cast<std::uint64_t>(std::min({std::ceil(wanted[number]), twice, static_cast<double>(most)}));
-    for (std::uint64_t pass = done; pass < goal; ++pass) units.add(pass * groups() + number);
+    std::uint64_t more = goal - std::min(goal, done);
+    for (std::uint64_t pass = 0; more > 0; ++pass) {
+      const std::uint64_t unit = pass * groups() + number;
+      if (sums.done(seed).contains(unit)) continue;
+      units.add(unit);
+      --more;
+    }
   }
   return units;
 }

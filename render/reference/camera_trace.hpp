@@ -49,12 +49,12 @@ class CameraJob final : public TraceJob {
   TraceIdentity identity() const override;
   void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const override;
 
-  int samplesPerUnit() const;
   std::uint64_t unitsOf(std::uint64_t samples) const;              // that add so many samples to each pixel
   std::vector<CameraResult> results(const TraceSums& sums) const;  // of each band
   // What brings the root mean square standard error of the pixels, relative to the mean of the picture, to `target` in
-  // each band: more units for the tiles that are noisier. Nothing when it is there, or at `most` units of each tile.
-  UnitRanges unitsFor(double target, std::uint64_t most, const TraceSums& sums) const;
+  // each band, in steps: missing units of `seed`, more of them for the tiles that are noisier. None when it is there, or
+  // at `most` units of each tile.
+  UnitRanges unitsFor(double target, std::uint64_t most, const TraceSums& sums, std::uint64_t seed) const;
 
  private:
   struct Parts;

@@ -144,6 +144,8 @@ struct ForwardJob::Parts {
 
 ForwardJob::ForwardJob(const RayScene& scene, std::vector<TraceLight> bands, std::uint64_t paths_per_unit) {
   requireFitting(bands, scene);
+  require(paths_per_unit >= 1 && paths_per_unit <= kMostUnitPaths, "paths per unit", paths_per_unit,
+          "from 1 to " + std::to_string(kMostUnitPaths));
   for (const TraceLight& light : bands)
     require(scene.geometry().period || light.ground_albedo == 0.f, "ground albedo", light.ground_albedo,
             "0 in a forward trace of a stand without period");
@@ -154,10 +156,6 @@ ForwardJob::~ForwardJob() = default;
 
 std::size_t ForwardJob::bins() const {
   return parts_->layout.bins();
-}
-
-std::uint64_t ForwardJob::pathsPerUnit() const {
-  return parts_->paths_per_unit;
 }
 
 TraceIdentity ForwardJob::identity() const {

@@ -52,7 +52,6 @@ class ForwardJob final : public TraceJob {
   TraceIdentity identity() const override;
   void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const override;
 
-  std::uint64_t pathsPerUnit() const;
   std::vector<ForwardResult> results(const TraceSums& sums) const;  // of each band
   // The largest standard error of a share of the light, relative to it; shares below 1 % are left out.
   double relativeError(const TraceSums& sums) const;

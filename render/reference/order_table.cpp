@@ -7,7 +7,7 @@
 namespace sunfleck {
 namespace {
 
-// A path ends in one bin alone, so that the bins are next to independent.
+// A path ends in one bin alone, and comes by the ground rarely twice, so that the bins are next to independent.
 struct IndependentSum {
   double value = 0., variance = 0.;
   void add(const Estimate& part, double weight) {

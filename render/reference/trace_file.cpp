@@ -21,8 +21,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "sunfleck trace 1\n";
-// More bins than any run has; a file that names more is damaged.
-constexpr std::uint64_t kMostBins = std::uint64_t{1} << 32;
+// A file of so many bytes has no more bins than this: most bins of a run are met soon.
+std::uint64_t mostBins(std::uint64_t bytes) {
+  return 10'000'000 + 1000 * bytes / sizeof(TraceSums::Bin);
+}
 
 std::uint32_t crcOf(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -74,29 +76,30 @@ void putBins(std::string& bytes, const TraceSums& sums) {
   put(bytes, std::numeric_limits<std::uint64_t>::max());
 }
 
-Json headerOf(const TraceSections& sections) {
-  Json header = Json::array();
-  for (const TraceSection& section : sections) {
+Json headerOf(const TraceFile& file) {
+  Json sections = Json::array();
+  for (const TraceSection& section : file.sections) {
     Json done = Json::array();
     for (const auto& [seed, units] : section.sums.done()) done.push_back({{"seed", seed}, {"units", units.ranges()}});
-    header.push_back({{"name", section.name},
+    sections.push_back({{"name", section.name},
                       {"identity", section.identity},
                       {"bins", section.sums.bins()},
                       {"groups", section.sums.groups()},
                       {"done", done},
                       {"planned", section.planned.ranges()},
+                      {"plan_of", section.plan_of},
                       {"asked", section.asked}});
   }
-  return header;
+  return {{"run", file.run}, {"sections", sections}};
 }
 
-TraceSection readSection(const Json& header, Reader& body, const fs::path& path) {
+TraceSection readSection(const Json& header, Reader& body, std::uint64_t most_bins, const fs::path& path) {
   const auto damaged = [&](bool wrong) {
     if (wrong) throw InvalidInput(path.string() + ": damaged: its numbers contradict each other");
   };
   const auto bins = header.at("bins").get<std::uint64_t>();
   const auto groups = header.at("groups").get<std::uint64_t>();
-  damaged(bins > kMostBins || groups == 0);
+  damaged(bins > most_bins || groups == 0);
   TraceSection section{.name = header.at("name").get<std::string>(),
                        .identity = header.at("identity").get<TraceIdentity>(),
                        .sums = TraceSums(bins, groups)};
@@ -109,6 +112,7 @@ TraceSection readSection(const Json& header, Reader& body, const fs::path& path)
     return units;
   };
   section.planned = unitsIn(header.at("planned"));
+  section.plan_of = header.at("plan_of").get<std::string>();
   section.asked = header.at("asked").get<std::uint64_t>();
   for (const Json& of_seed : header.at("done"))
     section.sums.restore(of_seed.at("seed").get<std::uint64_t>(), unitsIn(of_seed.at("units")));
@@ -122,17 +126,17 @@ TraceSection readSection(const Json& header, Reader& body, const fs::path& path)
 
 }  // namespace
 
-void writeTraceFile(const fs::path& path, const TraceSections& sections) {
+void writeTraceFile(const fs::path& path, const TraceFile& file) {
   std::string bytes(kMagic);
-  const std::string header = headerOf(sections).dump(1, ' ', false, Json::error_handler_t::replace);
+  const std::string header = headerOf(file).dump(1, ' ', false, Json::error_handler_t::replace);
   put(bytes, std::uint64_t{header.size()});
   bytes += header;
-  for (const TraceSection& section : sections) putBins(bytes, section.sums);
+  for (const TraceSection& section : file.sections) putBins(bytes, section.sums);
   put(bytes, crcOf(bytes));
   writeWhole(path, bytes);
 }
 
-TraceSections readTraceFile(const fs::path& path) {
+TraceFile readTraceFile(const fs::path& path) {
   if (!fs::is_regular_file(path)) throw InvalidInput(path.string() + ": must be a file that can be read");
   std::ifstream in(path, std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(in), {});
@@ -147,24 +151,33 @@ TraceSections readTraceFile(const fs::path& path) {
   if (end < kMagic.size() || crc != crcOf(std::string_view(bytes).substr(0, end)))
     throw InvalidInput(path.string() + ": damaged: its check sum is wrong");
   Reader reader(std::string_view(bytes).substr(kMagic.size(), end - kMagic.size()), path);
-  TraceSections sections;
+  TraceFile file;
   try {
     const Json header = Json::parse(reader.take(reader.get<std::uint64_t>()));
-    for (const Json& section : header) sections.push_back(readSection(section, reader, path));
+    file.run = header.at("run").get<TraceIdentity>();
+    for (const Json& section : header.at("sections"))
+      file.sections.push_back(readSection(section, reader, mostBins(bytes.size()), path));
   } catch (const Json::exception& e) {
     throw InvalidInput(path.string() + ": damaged: " + e.what());
   } catch (const std::bad_alloc&) {
     throw InvalidInput(path.string() + ": its sums do not fit into memory");
   }
   if (!reader.empty()) throw InvalidInput(path.string() + ": damaged: there is more than its header tells");
-  return sections;
+  return file;
 }
 
-void addPart(TraceSections& whole, const TraceSections& part, const fs::path& path) {
-  for (const TraceSection& section : part) {
-    const auto same = std::find_if(whole.begin(), whole.end(), [&](const auto& s) { return s.name == section.name; });
-    if (same == whole.end()) {
-      whole.push_back(section);
+TraceSection* TraceFile::find(const std::string& name) {
+  const auto found = std::find_if(sections.begin(), sections.end(), [&](const auto& s) { return s.name == name; });
+  return found == sections.end() ? nullptr : &*found;
+}
+
+void addPart(TraceFile& whole, const TraceFile& part, const fs::path& path) {
+  if (whole.sections.empty()) whole.run = part.run;
+  requireSame(path, part.run, whole.run);
+  for (const TraceSection& section : part.sections) {
+    TraceSection* const same = whole.find(section.name);
+    if (!same) {
+      whole.sections.push_back(section);
       continue;
     }
     requireSame(path, section.identity, same->identity);

@@ -1,5 +1,7 @@
 #include "render/reference/trace_goal.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -9,37 +11,40 @@
 namespace sunfleck {
 
 TraceGoal allOf(UnitRanges wanted) {
-  return {.next = [wanted = std::move(wanted), given = false](const TraceSums&) mutable {
-    return std::exchange(given, true) ? UnitRanges() : wanted;
+  return {.next = [wanted = std::move(wanted)](const TraceSums& sums, std::uint64_t seed) {
+    return wanted.without(sums.done(seed));
   }};
 }
 
 TraceGoal until(double target, std::function<double(const TraceSums& sums)> error, std::uint64_t most) {
   return {.next =
-              [=](const TraceSums& sums) {
-                const std::uint64_t done = sums.units();
-                if (done >= most || (done >= kLeastUnits && error(sums) <= target)) return UnitRanges();
-                return UnitRanges(0, std::min(most, std::max(kLeastUnits, done + done / 2)));
+              [=](const TraceSums& sums, std::uint64_t seed) {
+                const UnitRanges& done = sums.done(seed);
+                const std::uint64_t count = done.count();
+                if (sums.units() >= kLeastUnits && error(sums) <= target) return UnitRanges();
+                return UnitRanges(0, std::min(most, std::max(kLeastUnits, count + count / 2))).without(done);
               },
-          .decides_by_findings = true};
+          .name = fmt::format("error {}", target)};
 }
 
 bool pursue(const TraceGoal& goal, const TraceJob& job, TraceSection& section, TraceStore& store, std::uint64_t seed,
             int threads, const Progress& progress) {
   const Elapsed elapsed;
+  const std::string plan_of = goal.name.empty() ? "" : fmt::format("{}, seed {}", goal.name, seed);
+  if (section.plan_of != plan_of) section.planned = {};
+  section.plan_of = plan_of;
   bool go_on = true;
   const Progress watch = [&](double done) {
     store.writeIfDue();
-    go_on = goOn(progress, done) && elapsed.seconds() < goal.seconds && go_on;
-    return go_on;
+    return go_on = goOn(progress, done) && elapsed.seconds() < goal.seconds && go_on;
   };
-  if (!goal.decides_by_findings) section.planned = {};
   while (go_on) {
-    if (section.planned.without(section.sums.done(seed)).count() == 0) section.planned = goal.next(section.sums);
+    section.planned = section.planned.without(section.sums.done(seed));
+    if (section.planned.count() == 0) section.planned = goal.next(section.sums, seed);
     if (section.planned.count() == 0) break;
     runUnits(job, {.seed = seed, .wanted = section.planned, .threads = threads}, section.sums, watch);
   }
-  if (!goal.decides_by_findings) section.planned = {};
+  if (goal.name.empty()) section.planned = {};
   store.write();
   return go_on;
 }

@@ -5,8 +5,9 @@
 
 namespace sunfleck::detail {
 
-// Below this weight in its brightest band a path goes on by chance alone (Russian roulette).
-inline constexpr float kRouletteWeight = 0.5f;
+// Below this weight in its brightest band a path goes on by chance alone (Russian roulette). Of .5, .75, 1 and 2 the
+// second brings a picture of a crown of albedo .95 to a given noise soonest, by 7 % before the first.
+inline constexpr float kRouletteWeight = 0.75f;
 
 // A path of this many scatterings ends where it is: it can only be caught where nothing absorbs.
 inline constexpr int kMostScatterings = 1'000'000;
