@@ -1,5 +1,6 @@
 #include "grid/detail/block_visits.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
