@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -47,30 +48,61 @@ void overTiles(const FloatTree& tree, const Visit& visit) {
     if (*tile != 0.f) visit(*tile, static_cast<std::size_t>(tile.getVoxelCount()), tile.getBoundingBox());
 }
 
-// Of the occupied part of a tree.
-struct Occupied {
+// Of the occupied part of a block of cells.
+struct OccupiedOfBlock {
+  Coord origin;
+  std::uint64_t columns = 0;  // along z, 8 x 8, those that are occupied: column (x, y) is bit 8 x + y
   std::size_t cells = 0;
   double sum = 0.;  // of the values of the cells
+  openvdb::CoordBBox box;
+};
+
+OccupiedOfBlock occupiedOf(const Leaf& leaf) {
+  constexpr std::size_t kSide = Leaf::DIM;
+  OccupiedOfBlock found{.origin = leaf.origin()};
+  std::array<std::uint32_t, kSide> counts{};  // of each level of z, as the processor adds them at once
+  std::array<double, kSide> sums{};
+  const float* value = leaf.buffer().data();
+  for (std::size_t column = 0; column < kSide * kSide; ++column, value += kSide) {
+    std::uint32_t any = 0;
+    for (std::size_t z = 0; z < kSide; ++z) {
+      counts[z] += value[z] != 0.f;
+      sums[z] += static_cast<double>(value[z]);
+      any |= value[z] != 0.f;
+    }
+    found.columns |= std::uint64_t{any} << column;
+  }
+  for (std::size_t z = 0; z < kSide; ++z) {
+    found.cells += counts[z];
+    found.sum += sums[z];
+  }
+  if (found.cells == 0) return found;
+  std::uint8_t along_y = 0;
+  for (std::size_t x = 0; x < kSide; ++x) along_y |= static_cast<std::uint8_t>(found.columns >> kSide * x);
+  const auto isZero = [](std::uint32_t count) { return count == 0; };
+  const Coord low(std::countr_zero(found.columns) / 8, std::countr_zero(along_y),
+                  static_cast<int>(std::find_if_not(counts.begin(), counts.end(), isZero) - counts.begin()));
+  const Coord high(7 - std::countl_zero(found.columns) / 8, 7 - std::countl_zero(along_y),
+                   7 - static_cast<int>(std::find_if_not(counts.rbegin(), counts.rend(), isZero) - counts.rbegin()));
+  found.box = {found.origin + low, found.origin + high};
+  return found;
+}
+
+// Of the occupied part of a tree.
+struct Occupied {
+  std::vector<OccupiedOfBlock> blocks;
+  std::size_t cells = 0;
+  double sum = 0.;
   openvdb::CoordBBox box;
   bool tiles = false;
 };
 
 Occupied occupiedOf(const FloatTree& tree) {
-  Occupied all;
-  for (const Occupied& part : overBlocks(tree, [](const Leaf& leaf) {
-         Occupied found;
-         for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-           const float value = leaf.getValue(i);
-           if (value == 0.f) continue;
-           ++found.cells;
-           found.sum += static_cast<double>(value);
-           found.box.expand(leaf.offsetToGlobalCoord(i));
-         }
-         return found;
-       })) {
-    all.cells += part.cells;
-    all.sum += part.sum;
-    all.box.expand(part.box);
+  Occupied all{.blocks = overBlocks(tree, [](const Leaf& leaf) { return occupiedOf(leaf); })};
+  for (const OccupiedOfBlock& block : all.blocks) {
+    all.cells += block.cells;
+    all.sum += block.sum;
+    all.box.expand(block.box);
   }
   overTiles(tree, [&](float value, std::size_t cells, const openvdb::CoordBBox& box) {
     all.tiles = true;
@@ -83,12 +115,15 @@ Occupied occupiedOf(const FloatTree& tree) {
 
 // Of the columns of cells along z that hold leaves, seen from above; of the whole, or of what lies within a rectangle
 // [squared side of a cell].
-double occupiedColumns(const FloatTree& tree, const std::optional<DensityGrid::Cells::Rectangle>& within) {
+double occupiedColumns(const std::vector<OccupiedOfBlock>& blocks,
+                       const std::optional<DensityGrid::Cells::Rectangle>& within) {
   std::map<std::pair<int, int>, std::uint64_t> columns;  // of each 8 x 8, those that do
-  for (const Leaf* leaf : blocksOf(tree)) {
-    std::uint64_t& mask = columns[{leaf->origin().x(), leaf->origin().y()}];
-    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
-      if (leaf->getValue(i) != 0.f) mask |= std::uint64_t{1} << (i / Leaf::DIM);
+  for (std::size_t i = 0; i < blocks.size();) {
+    const std::pair place(blocks[i].origin.x(), blocks[i].origin.y());
+    std::uint64_t mask = 0;  // of the blocks above each other, which follow each other in the tree
+    for (; i < blocks.size() && std::pair(blocks[i].origin.x(), blocks[i].origin.y()) == place; ++i)
+      mask |= blocks[i].columns;
+    columns[place] |= mask;
   }
   double area = 0.;
   for (const auto& [place, mask] : columns) {
@@ -150,7 +185,7 @@ DensityGrid::Cells::Cells(DensityTrees trees, double side, const glm::dvec3& low
   const Occupied leaves = occupiedOf(*density);
   occupied = leaves.cells;
   leaf_area = leaves.sum * volume;
-  if (!leaves.tiles) crown_area = occupiedColumns(*density, within) * cell_size * cell_size;
+  if (!leaves.tiles) crown_area = occupiedColumns(leaves.blocks, within) * cell_size * cell_size;
   if (!optics.empty() && leaves.sum > 0.) mean_optics = meanOver(*density, optics);
   if (wood) {
     const Occupied blocked = occupiedOf(*wood);

@@ -50,19 +50,22 @@ FloatTreePtr treeOf(const FloatTree& density, const std::vector<std::vector<Valu
 }  // namespace
 
 DensityTrees::DensityTrees(std::vector<BlockOfCells> leaves) {
+  openvdb::tree::ValueAccessor<FloatTree> nearby(*density);
+  moments.reserve(leaves.size());
   for (BlockOfCells& block : leaves) {
     if (block.leaf->isEmpty()) continue;
     block.leaf->setTransientData(static_cast<openvdb::Index32>(moments.size()));
     moments.push_back(std::move(block.moments));
     if (!block.optics.empty()) optics.push_back(std::move(block.optics));
-    density->addLeaf(block.leaf.release());
+    nearby.addLeaf(block.leaf.release());
   }
 }
 
 void DensityTrees::setWood(std::vector<BlockOfCells> blocks) {
   wood = std::make_shared<FloatTree>(0.f);
+  openvdb::tree::ValueAccessor<FloatTree> nearby(*wood);
   for (BlockOfCells& block : blocks)
-    if (!block.leaf->isEmpty()) wood->addLeaf(block.leaf.release());
+    if (!block.leaf->isEmpty()) nearby.addLeaf(block.leaf.release());
 }
 
 LeafOrientation DensityTrees::orientation(const openvdb::Coord& cell) const {

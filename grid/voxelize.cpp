@@ -37,15 +37,13 @@ static_assert(kBlock == Leaf::DIM);
 // no digits are lost.
 class TrianglesInCells {
  public:
-  TrianglesInCells(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles, double cell_size)
-      : mesh_(mesh), triangles_(triangles), cell_size_(cell_size) {
-    Bounds box;
-    for (const glm::uvec3& t : triangles)
-      for (int corner = 0; corner < 3; ++corner) box.include(mesh.vertices[t[corner]]);
-    if (box.empty()) return;
-    first_block_ = glm::ivec3(glm::floor(glm::dvec3(box.low) / (cell_size * kBlock)));
-    corner_ = glm::dvec3(first_block_) * (cell_size * kBlock);
-  }
+  // `box`: of the triangles
+  TrianglesInCells(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles, const Bounds& box, double cell_size)
+      : mesh_(mesh),
+        triangles_(triangles),
+        cell_size_(cell_size),
+        first_block_(glm::floor(glm::dvec3(box.low) / (cell_size * kBlock))),
+        corner_(glm::dvec3(first_block_) * (cell_size * kBlock)) {}
 
   ConvexPolygon triangle(std::uint32_t i) const {
     const glm::uvec3& t = triangles_[i];
@@ -69,19 +67,20 @@ class TrianglesInCells {
   const TreeMesh& mesh_;
   const std::vector<glm::uvec3>& triangles_;
   double cell_size_;
-  glm::ivec3 first_block_{0};
-  glm::dvec3 corner_{0.};  // [m]
+  glm::ivec3 first_block_;
+  glm::dvec3 corner_;  // [m]
 };
 
 glm::dvec3 normal(const ConvexPolygon& triangle) {
   return glm::cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
 }
 
-// What bounds how many cells triangles cross.
+// What bounds where triangles lie and how many cells they cross.
 struct Extents {
   double faces = 0.;  // of the triangles' projections along x, y and z, the sum [m^2]
   double sides = 0.;  // of the triangles' boxes, the sum [m]
   double count = 0.;
+  Bounds box;
 
   // At most so many cells of that side: as many as the projections cover and the sides pass.
   double crossings(double side) const { return faces / (side * side) + 2. * sides / side + count; }
@@ -93,6 +92,7 @@ Extents extentsOf(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles
       [&](const tbb::blocked_range<std::size_t>& range, Extents sum) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
           const glm::uvec3& t = triangles[i];
+          for (int corner = 0; corner < 3; ++corner) sum.box.include(mesh.vertices[t[corner]]);
           const glm::dvec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
           const glm::dvec3 projected = glm::abs(glm::cross(b - a, c - a)) * 0.5;
           const glm::dvec3 sides = glm::max(glm::max(a, b), c) - glm::min(glm::min(a, b), c);
@@ -103,18 +103,21 @@ Extents extentsOf(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles
         return sum;
       },
       [](const Extents& a, const Extents& b) {
-        return Extents{a.faces + b.faces, a.sides + b.sides, a.count + b.count};
+        Extents sum{a.faces + b.faces, a.sides + b.sides, a.count + b.count, a.box};
+        sum.box.include(b.box);
+        return sum;
       });
 }
 
-void validate(const TreeMesh& mesh, const Extents& leaves, const Extents& wood, double cell_size) {
+void validate(const Extents& leaves, const Extents& wood, double cell_size) {
   const auto check = [&](bool ok, const char* rule) {
     require(ok, "cell size [m]", static_cast<float>(cell_size), rule);
   };
   // OpenVDB knows no smaller cells: their volume is 0 to it.
   check(cell_size >= static_cast<double>(2e-5f) && cell_size <= 1e6, "from 2e-5 to 1e6");
-  if (leafBounds(mesh).empty()) throw InvalidInput("the tree has no leaves: at least one is needed for a density");
-  const Bounds box = bounds(mesh);
+  if (leaves.box.empty()) throw InvalidInput("the tree has no leaves: at least one is needed for a density");
+  Bounds box = leaves.box;
+  box.include(wood.box);
   for (int axis = 0; axis < 3; ++axis) {
     check(static_cast<double>(box.high[axis]) - static_cast<double>(box.low[axis]) <= kMostCells * cell_size,
           "so large that the tree spans at most 2^20 cells along an axis");
@@ -143,35 +146,32 @@ struct Box {
 // All pairs of a block and a triangle with a part in it.
 SortedVisits visits(const TrianglesInCells& triangles, const Stage& stage) {
   constexpr std::size_t kRun = 1024;  // triangles
-  struct Local {
-    std::vector<Visit> visits;
-    std::vector<CellShare> shares;
-  };
-  tbb::enumerable_thread_specific<Local> locals;
-  stage.inBatches((triangles.count() + kRun - 1) / kRun, 0., 0.4, [&](std::size_t run) {
-    Local& local = locals.local();
+  std::vector<std::vector<Visit>> of_runs((triangles.count() + kRun - 1) / kRun);
+  tbb::enumerable_thread_specific<std::vector<CellShare>> of_threads;
+  stage.inBatches(of_runs.size(), 0., 0.3, [&](std::size_t run) {
+    std::vector<CellShare>& shares = of_threads.local();
+    of_runs[run].reserve(2 * kRun);
     for (std::size_t i = run * kRun; i < std::min(triangles.count(), (run + 1) * kRun); ++i) {
       ConvexPolygon polygon = triangles.triangle(static_cast<std::uint32_t>(i));
       if (const Box box(polygon); box.inOne(kBlock)) {
-        local.visits.push_back({blockKey(glm::ivec3(box.low) / kBlock), static_cast<std::uint32_t>(i)});
+        of_runs[run].push_back({blockKey(glm::ivec3(box.low) / kBlock), static_cast<std::uint32_t>(i)});
         continue;
       }
       for (int corner = 0; corner < 3; ++corner) polygon.corners[static_cast<std::size_t>(corner)] /= double{kBlock};
-      local.shares.clear();
-      shareAmongCells(polygon, normal(polygon), local.shares);
-      for (const CellShare& share : local.shares)
-        local.visits.push_back({blockKey(share.cell), static_cast<std::uint32_t>(i)});
+      shares.clear();
+      shareAmongCells(polygon, normal(polygon), shares);
+      for (const CellShare& share : shares)
+        of_runs[run].push_back({blockKey(share.cell), static_cast<std::uint32_t>(i)});
     }
   });
 
-  std::vector<Visit> all;
-  std::size_t count = 0;
-  for (const Local& local : locals) count += local.visits.size();
-  all.reserve(count);
-  for (Local& local : locals) {
-    all.insert(all.end(), local.visits.begin(), local.visits.end());
-    local.visits = {};
-  }
+  std::vector<std::size_t> place(of_runs.size() + 1);
+  for (std::size_t run = 0; run < of_runs.size(); ++run) place[run + 1] = place[run] + of_runs[run].size();
+  std::vector<Visit> all(place.back());
+  stage.inBatches(of_runs.size(), 0.3, 0.4, [&](std::size_t run) {
+    std::copy(of_runs[run].begin(), of_runs[run].end(), all.data() + place[run]);
+    of_runs[run] = {};
+  });
   return SortedVisits(std::move(all));
 }
 
@@ -263,7 +263,7 @@ BlockOfCells blockOfCells(const TrianglesInCells& triangles, std::span<const Vis
 template <typename Sums>
 std::vector<BlockOfCells> blocksOf(const TreeMesh& mesh, const std::vector<glm::uvec3>& mesh_triangles,
                                    const Extents& extents, double cell_size, const Stage& stage) {
-  const TrianglesInCells triangles(mesh, mesh_triangles, cell_size);
+  const TrianglesInCells triangles(mesh, mesh_triangles, extents.box, cell_size);
   const SortedVisits sorted = visits(triangles, stage);
   const double cells = std::min(extents.crossings(cell_size), static_cast<double>(sorted.blocks()) * Leaf::SIZE);
   requireMemory(
@@ -293,7 +293,7 @@ void requireMemory(double bytes, double cell_size) {
 DensityGrid DensityGrid::voxelize(const TreeMesh& mesh, float cell_size, const Progress& progress) {
   const double side = static_cast<double>(cell_size);
   const Extents leaves = extentsOf(mesh, mesh.leaf_triangles), wood = extentsOf(mesh, mesh.wood_triangles);
-  validate(mesh, leaves, wood, side);
+  validate(leaves, wood, side);
   const double leaf_work = leaves.count / (leaves.count + wood.count);
   DensityTrees trees(blocksOf<LeafSums>(mesh, mesh.leaf_triangles, leaves, side, {progress, 0., leaf_work}));
   if (!mesh.wood_triangles.empty())

@@ -1,15 +1,12 @@
 #pragma once
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "core/progress.hpp"
@@ -17,15 +14,13 @@
 namespace sunfleck {
 
 // Sparse grids are made block by block: what has a part in a block of 8 x 8 x 8 cells is listed as a visit, the visits
-// are sorted, and each block is then made by one thread from its own visits in their order, which threads cannot
-// change.
+// are sorted by blocks, and each block is then made by one thread from its own visits in their order, which threads
+// cannot change.
 constexpr int kBlock = 8;
 
 struct Visit {
   std::uint64_t block;    // its key
   std::uint32_t visitor;  // a triangle or a tree
-
-  auto operator<=>(const Visit&) const = default;
 };
 
 // x, y and z of a block, 0 .. 2^21 - 1 each, as one number.
@@ -39,15 +34,10 @@ inline glm::ivec3 blockOf(std::uint64_t key) {
   return {static_cast<int>(key >> 42), static_cast<int>((key >> 21) & mask), static_cast<int>(key & mask)};
 }
 
-// Visits in order, block after block.
+// Visits block after block, those of a block in the order in which they were listed.
 class SortedVisits {
  public:
-  explicit SortedVisits(std::vector<Visit> visits) : all_(std::move(visits)) {
-    tbb::parallel_sort(all_.begin(), all_.end());
-    for (std::size_t i = 0; i < all_.size(); ++i)
-      if (i == 0 || all_[i].block != all_[i - 1].block) first_.push_back(i);
-    first_.push_back(all_.size());
-  }
+  explicit SortedVisits(std::vector<Visit> visits);
   std::size_t blocks() const { return first_.size() - 1; }
   std::span<const Visit> ofBlock(std::size_t i) const {
     return std::span(all_).subspan(first_[i], first_[i + 1] - first_[i]);
