@@ -133,7 +133,8 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
                                     (static_cast<float>(y) + at.v) * rays.down_step;
           const auto seen = paths.look(paths.startOf(on_line, rays.sight), rays.sight, random);
           for (int band = 0; band < band_count; ++band) {
-            const double once = double{seen.leaf_once[band]} + double{seen.other_once[band]};
+            const double once =
+                double{seen.leaf_once[band]} + double{seen.wood_once[band]} + double{seen.ground_once[band]};
             const double radiance = once + double{seen.more[band]};
             const std::size_t pixel = parts_->pixel(x, y, band);
             tally.add(pixel, share * radiance);

@@ -15,7 +15,12 @@ namespace sunfleck::detail {
 // seen and by how often its light has been scattered.
 template <int N>
 struct Seen {
-  BandLanes<N> leaf_once, other_once, more;  // other: wood and ground
+  BandLanes<N> leaf_once, wood_once, ground_once, more;
+
+  BandLanes<N>& once(Surface surface) {
+    if (surface == Surface::none) return ground_once;
+    return surface == Surface::leaf ? leaf_once : wood_once;
+  }
 };
 
 // (R2) Paths from the eye, with the sun sampled wherever they meet something, before a black sky.
@@ -45,10 +50,7 @@ class EyePaths {
         hit.normal = {0.f, 0.f, 1.f};
       }
       const SurfaceOptics<N>& surface = optics_.of(hit);
-      BandLanes<N>& part = scatterings > 0                ? seen.more
-                           : hit.surface == Surface::leaf ? seen.leaf_once
-                                                          : seen.other_once;
-      addSun(hit, surface, weight, part);
+      addSun(hit, surface, weight, scatterings > 0 ? seen.more : seen.once(hit.surface));
       const Fate fate = scatter(surface, weight, random);
       if (fate == Fate::absorbed) break;
       const glm::vec3 side = fate == Fate::passed ? -hit.normal : hit.normal;
