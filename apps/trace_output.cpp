@@ -46,6 +46,12 @@ Json known(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+std::vector<NamedEstimate> figuresOf(const ForwardResult& result) {
+  std::vector<NamedEstimate> figures;
+  for (const Row& row : rowsOf(result)) figures.push_back({row.name, row.estimate});
+  return figures;
+}
+
 Json jsonOf(const ForwardResult& result) {
   Json json = Json::object();
   for (const Row& row : rowsOf(result)) {

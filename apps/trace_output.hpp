@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/trace_compare.hpp"
 #include "render/reference/forward_trace.hpp"
 #include "render/scene.hpp"
 
@@ -12,6 +13,8 @@ namespace sunfleck::apps {
 // JSON has no infinity: an error that is not known is null.
 nlohmann::ordered_json known(double value);
 
+// The shares of the light of one band by their names.
+std::vector<NamedEstimate> figuresOf(const ForwardResult& result);
 // The shares of the light, their errors and their orders, of one band.
 nlohmann::ordered_json jsonOf(const ForwardResult& result);
 // The same as a table for people.

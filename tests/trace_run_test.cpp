@@ -13,6 +13,7 @@
 
 #include "core/random.hpp"
 #include "core/require.hpp"
+#include "render/reference/brf_trace.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
 #include "render/reference/trace_goal.hpp"
@@ -49,6 +50,7 @@ struct Example {
                  .width = 50,
                  .height = 40};
   CameraJob camera{scene, bands, rays, -1.f, 2};
+  BrfJob brf{scene, bands, {{0.2, 0.}, {0.9, 2.}}, 16};
 };
 
 void expectSame(const TraceSums& a, const TraceSums& b) {
@@ -127,11 +129,11 @@ TEST(TraceSums, GiveMeanAndStandardError) {
 }
 
 // Check that any number of threads, any order of parts and any interruption give the same sums to the last bit, for
-// both estimators.
+// all estimators.
 TEST(R1_TraceRun, AnySplitGivesTheSameBits) {
   const Example example;
-  for (const TraceJob* job :
-       {static_cast<const TraceJob*>(&example.job), static_cast<const TraceJob*>(&example.camera)}) {
+  for (const TraceJob* job : {static_cast<const TraceJob*>(&example.job), static_cast<const TraceJob*>(&example.camera),
+                              static_cast<const TraceJob*>(&example.brf)}) {
     constexpr std::uint64_t kUnits = 40;
     const TraceSums expected = whole(*job, kUnits);
     TraceSums threaded(job->bins(), job->groups());
@@ -218,11 +220,14 @@ TEST(R1_TraceRun, GoesOnFromItsFileToTheSameBits) {
     if (&job == &example.camera)
       return TraceGoal{.next = [&](const TraceSums& sums) { return example.camera.unitsFor(0.2, 64, sums); },
                        .decides_by_findings = true};
+    if (&job == &example.brf)
+      return TraceGoal{.next = [&](const TraceSums& sums) { return example.brf.unitsFor(0.1, 200, sums); },
+                       .decides_by_findings = true};
     return until(
         0.02, [&](const TraceSums& sums) { return example.job.relativeError(sums); }, 400);
   };
-  for (const TraceJob* job :
-       {static_cast<const TraceJob*>(&example.job), static_cast<const TraceJob*>(&example.camera)}) {
+  for (const TraceJob* job : {static_cast<const TraceJob*>(&example.job), static_cast<const TraceJob*>(&example.camera),
+                              static_cast<const TraceJob*>(&example.brf)}) {
     const fs::path once = folder / "once.trace", often = folder / "often.trace";
     {
       TraceStore store(once, 1e9, {{"scene", "example"}});
