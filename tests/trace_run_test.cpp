@@ -318,3 +318,20 @@ TEST(R1_TraceRun, RefusesWhatIsNotItsFile) {
   TraceStore other(file, 1e9, {{"scene", "another"}});
   EXPECT_THROW(other.section("light", example.job), InvalidInput);
 }
+
+// Check that a difference in a long list, of views say, is told by the place where the lists part.
+TEST(TraceIdentity, TellsWhereLongOnesPart) {
+  const std::string many(100'000, 'v');
+  EXPECT_NO_THROW(requireSame("a.trace", {{"views", many}}, {{"views", many}}));
+  for (const std::string& other : {many.substr(0, 60'000) + "other" + many, many + "other", many.substr(0, 5)}) {
+    try {
+      requireSame("a.trace", {{"views", other}}, {{"views", many}});
+      ADD_FAILURE() << "took them for the same";
+    } catch (const InvalidInput& e) {
+      const std::string message = e.what();
+      EXPECT_LT(message.size(), 300u);
+      EXPECT_TRUE(message.starts_with("a.trace: made with views = ... vv")) << message;
+      EXPECT_EQ(message.find("other") != std::string::npos, other.size() > 5);
+    }
+  }
+}

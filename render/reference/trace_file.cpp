@@ -185,7 +185,8 @@ void addPart(TraceSections& whole, const TraceSections& part, const fs::path& pa
 std::map<std::uint64_t, UnitRanges> missingUnits(const TraceSection& section) {
   std::map<std::uint64_t, UnitRanges> missing;
   for (const auto& [seed, units] : section.sums.done())
-    if (UnitRanges left = UnitRanges(0, section.asked).without(units); left.count() > 0) missing[seed] = std::move(left);
+    if (UnitRanges left = UnitRanges(0, section.asked).without(units); left.count() > 0)
+      missing[seed] = std::move(left);
   return missing;
 }
 
@@ -196,8 +197,16 @@ void requireSame(const fs::path& path, const TraceIdentity& found, const TraceId
   };
   const auto compare = [&](const std::string& name) {
     const std::string is = valueIn(found, name), should = valueIn(expected, name);
-    if (is != should)
-      throw InvalidInput(fmt::format("{}: made with {} = {}: must be {}", path.string(), name, is, should));
+    if (is == should) return;
+    // Of long lists, where they part.
+    constexpr std::size_t kMostShown = 400, kAround = 40;
+    const bool cut = std::max(is.size(), should.size()) > kMostShown;
+    const auto parting =
+        static_cast<std::size_t>(std::mismatch(is.begin(), is.end(), should.begin(), should.end()).first - is.begin());
+    const auto shown = [&](const std::string& text) {
+      return cut ? "... " + text.substr(parting - std::min(parting, kAround), 2 * kAround) + " ..." : text;
+    };
+    throw InvalidInput(fmt::format("{}: made with {} = {}: must be {}", path.string(), name, shown(is), shown(should)));
   };
   for (const auto& [name, value] : expected) compare(name);
   for (const auto& [name, value] : found) compare(name);
