@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <string_view>
 
+#include "apps/brf_options.hpp"
+#include "apps/brf_output.hpp"
 #include "apps/commands.hpp"
 #include "apps/pictures.hpp"
 #include "apps/scene_options.hpp"
@@ -21,6 +25,7 @@
 #include "grid/density_grid.hpp"
 #include "render/compare/validation.hpp"
 #include "render/image_file.hpp"
+#include "render/reference/brf_trace.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
 #include "render/reference/trace_goal.hpp"
@@ -32,18 +37,23 @@ constexpr double kPaths = 4e6;
 // A run that is to reach an error stops here at the latest.
 constexpr double kMostPaths = 1e15;
 constexpr std::uint64_t kMostTileUnits = 1'000'000;
+// So do views that are to reach one.
+constexpr std::uint64_t kMostViewUnits = 1'000'000;
+
+const std::array<std::string, kBands> kBandNames{"red", "green", "blue"};
 
 struct TraceOptions {
   SceneOptions scene;
   CameraOptions camera;
   std::optional<double> paths;  // 4e6, or without end where there is a target
+  BrfOptions brf;
   int samples = 64;
   int band = 0;
   float exposure = kExposure;
   bool all_bands = false, without_wood = false, only_picture = false;
   std::string leaves, picture;
   std::vector<float> other_leaf;  // reflectance, transmittance
-  std::string checkpoint, target, time, part;
+  std::string checkpoint, target, time, part, compare;
   double write_every = 60.;  // [s]
 };
 
@@ -133,6 +143,7 @@ class TraceRun {
     const std::vector<ForwardResult> results = job.results(section.sums);
     const ForwardResult& first = results.front();
     if (!options_.leaves.empty()) writeLeaves(options_.leaves, scene_, first);
+    figures_ = figuresOf(first);
     json_.update(jsonOf(first));
     json_["paths"] = first.paths;
     json_["seconds"] = spent.seconds;
@@ -140,10 +151,9 @@ class TraceRun {
     if (options_.all_bands)
       for (const ForwardResult& result : results) json_["bands"].push_back(jsonOf(result));
     if (!run_.json) {
-      static constexpr std::array names{"red", "green", "blue"};
       fmt::print("{}: share of the incident light\n", scene_.name);
       for (std::size_t band = 0; band < results.size(); ++band) {
-        if (options_.all_bands) fmt::print(" {}\n", names[band]);
+        if (options_.all_bands) fmt::print(" {}\n", kBandNames[band]);
         fmt::print("{}", tableOf(results[band]));
       }
       printSpeed(first.paths, spent);
@@ -181,6 +191,53 @@ class TraceRun {
     fmt::print("picture {} x {}: mean radiance {:.7f} +- {:.7f}\n", pixels.width, pixels.height, result.mean.value,
                result.mean.standard_error);
     printSpeed(result.paths, spent);
+  }
+
+  void brf(const std::vector<BrfView>& views) {
+    std::vector<ViewDirection> directions;
+    for (const BrfView& view : views) directions.push_back(view.direction);
+    const auto paths = static_cast<std::uint64_t>(options_.brf.paths);
+    const std::uint64_t per_unit = unitSize(store_.identity("brf"), "paths per unit", pathsPerUnit(paths));
+    const BrfJob job(rays_, bands_, directions, per_unit);
+    TraceSection& section = store_.section("brf", job);
+    TraceGoal goal = allOf(partOf(job.unitsOf(paths), extent_.part, extent_.parts));
+    section.asked = extent_.target == 0. ? job.unitsOf(paths) : 0;
+    if (extent_.target > 0.)
+      goal = {.next = [&](const auto& sums,
+                          std::uint64_t seed) { return job.unitsFor(extent_.target, kMostViewUnits, sums, seed); },
+              .name = fmt::format("error of views {}", extent_.target)};
+    const Spent spent = work(goal, job, section, "tracing reflectance factors");
+    if (section.sums.units() == 0) return;
+
+    const std::vector<BrfResult> results = job.results(section.sums);
+    const BrfResult& first = results.front();
+    for (std::size_t i = 0; i < views.size(); ++i) figures_.push_back({views[i].name, first.views[i].whole});
+    figures_.push_back({"brf_albedo", first.albedo.whole});
+    if (!options_.brf.csv.empty()) writeBrf(options_.brf.csv, views, results, {kBandNames.begin(), kBandNames.end()});
+    if (!options_.brf.mes.empty()) writeMes(options_.brf.mes, views, first, scene_);
+    json_["brf"] = jsonOf(views, first);
+    json_["brf_albedo"] = jsonOf(first.albedo, "albedo");
+    json_["brf_paths"] = first.paths;
+    json_["brf_cpu_seconds"] = spent.cpu_seconds;
+    if (options_.all_bands)
+      for (const BrfResult& result : results)
+        json_["brf_bands"].push_back({{"brf", jsonOf(views, result)}, {"albedo", jsonOf(result.albedo, "albedo")}});
+    if (run_.json) return;
+    fmt::print("reflectance factors, sun at {:.6g} degrees\n", double{scene_.sun_zenith} * 180. / std::numbers::pi);
+    for (std::size_t band = 0; band < results.size(); ++band) {
+      if (options_.all_bands) fmt::print(" {}\n", kBandNames[band]);
+      fmt::print("{}", tableOf(views, results[band]));
+    }
+    printSpeed(first.paths, spent);
+  }
+
+  // Holds against what others found what has been traced of it.
+  void compare(std::vector<NamedEstimate> reference) {
+    std::erase_if(reference, [&](const NamedEstimate& row) {
+      return std::none_of(figures_.begin(), figures_.end(), [&](const auto& of) { return of.name == row.name; });
+    });
+    json_["comparison"] = comparisonJson(figures_, reference);
+    if (!run_.json) fmt::print("against {}\n{}", options_.compare, comparisonTable(figures_, reference));
   }
 
   const nlohmann::ordered_json& json() const { return json_; }
@@ -261,24 +318,44 @@ class TraceRun {
   RayScene rays_;
   std::vector<TraceLight> bands_;
   TraceStore store_;
+  std::vector<NamedEstimate> figures_;  // of the first band
   nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
   std::optional<LeafOptics> traced_leaf_;  // where --other-leaf asks for others
   Elapsed begun_;
 };
 
+// The figures that a run tells.
+std::vector<std::string> figureNames(const TraceOptions& options, const std::vector<BrfView>& views) {
+  std::vector<std::string> names;
+  if (!options.only_picture && !options.brf.only)
+    for (const NamedEstimate& figure : figuresOf(ForwardResult())) names.push_back(figure.name);
+  for (const BrfView& view : views) names.push_back(view.name);
+  if (!views.empty()) names.push_back("brf_albedo");
+  if (names.empty()) throw InvalidInput("--compare: must be without --only-picture");
+  return names;
+}
+
 int runTrace(const TraceOptions& options, const RunOptions& run) {
+  if (!options.brf.csv.empty()) requireNamed(options.brf.csv, ".csv");
+  if (!options.brf.mes.empty()) requireNamed(options.brf.mes, ".mes");
   if (!options.leaves.empty()) requireNamed(options.leaves, ".csv");
   if (!options.picture.empty()) requirePictureName(options.picture);
   if (!options.checkpoint.empty()) requireNamed(options.checkpoint, ".trace");
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
+  const std::vector<BrfView> views = brfViews(options.brf, scene);
+  std::vector<NamedEstimate> reference;
+  if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, views));
   TraceRun trace(options, run, scene);
-  if (!options.only_picture) trace.light();
+  if (!options.only_picture && !options.brf.only) trace.light();
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
-  if (pictured && !interrupted()) trace.picture();
+  if (pictured && !options.brf.only && !interrupted()) trace.picture();
+  if (!views.empty() && !interrupted()) trace.brf(views);
+  if (!reference.empty()) trace.compare(std::move(reference));
 
   if (run.json) fmt::print("{}\n", trace.json().dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  for (const std::string& file : {options.leaves, options.picture, options.checkpoint})
+  for (const std::string& file :
+       {options.leaves, options.picture, options.brf.csv, options.brf.mes, options.checkpoint})
     if (!file.empty() && !run.json && std::filesystem::exists(file)) fmt::print("wrote {}\n", file);
   if (!trace.failure().empty()) fmt::print(stderr, "sunfleck: {}\n", trace.failure());
   if (interrupted()) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
@@ -311,6 +388,12 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   CLI::Option* all_bands =
       command->add_flag("--all-bands", trace->all_bands, "Trace the three bands of the scene on the same paths")
           ->excludes("--band");
+  addBrfOptions(*command, trace->brf);
+  command
+      ->add_option("--compare", trace->compare,
+                   "CSV file name,value,standard_error of figures to compare with: names as in --json, brf:ZENITH of "
+                   "--brf, brf:ZENITH:AZIMUTH of --brf-views, brf_albedo. Tells per cent, z and the score of RAMI-IV")
+      ->excludes("--all-bands");
   command
       ->add_option("--other-leaf", trace->other_leaf,
                    "Tell the shares also for leaves of this reflectance and transmittance, from the same paths")
@@ -326,8 +409,8 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
       ->check(numberIn(0., 1e9, "in [0, 1e9] s"))
       ->needs("--checkpoint");
   CLI::Option* target = command->add_option("--target", trace->target,
-                                            "Stop at this relative error, such as 0.5%, of all shares above 1 %, and "
-                                            "of the picture's pixels (root mean square, "
+                                            "Stop at this relative error, such as 0.5%, of all shares above 1 %, of "
+                                            "every view, and of the picture's pixels (root mean square, "
                                             "by the mean)");
   command->add_option("--time", trace->time, "Stop after so long: seconds, or with m or h, such as 10m");
   command

@@ -42,6 +42,16 @@ Json jsonOf(const OrderTable& table) {
 
 }  // namespace
 
+Json known(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::vector<NamedEstimate> figuresOf(const ForwardResult& result) {
+  std::vector<NamedEstimate> figures;
+  for (const Row& row : rowsOf(result)) figures.push_back({row.name, row.estimate});
+  return figures;
+}
+
 Json jsonOf(const ForwardResult& result) {
   Json json = Json::object();
   for (const Row& row : rowsOf(result)) {

@@ -4,11 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "apps/trace_compare.hpp"
 #include "render/reference/forward_trace.hpp"
 #include "render/scene.hpp"
 
 namespace sunfleck::apps {
 
+// JSON has no infinity: a score that cannot be told is null.
+nlohmann::ordered_json known(double value);
+
+// The shares of the light of one band by their names.
+std::vector<NamedEstimate> figuresOf(const ForwardResult& result);
 // The shares of the light, their errors and their orders, of one band.
 nlohmann::ordered_json jsonOf(const ForwardResult& result);
 // The same as a table for people.

@@ -23,8 +23,8 @@ namespace {
   throw InvalidInput(path.string() + ": cannot be written: " + reason);
 }
 
-// Waits until a file, or the names in a folder, are on the disk; `path` is what the user calls it. Not every file system
-// can tell.
+// Waits until a file, or the names in a folder, are on the disk; `path` is what the user calls it. Not every file
+// system can tell.
 void sync(const fs::path& file, const fs::path& path) {
   const int opened = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (opened < 0) return;

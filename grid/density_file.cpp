@@ -18,9 +18,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/available_memory.hpp"
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
-#include "core/available_memory.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/detail/vdb_layout.hpp"
 #include "grid/detail/vdb_seal.hpp"

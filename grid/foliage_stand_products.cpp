@@ -5,9 +5,9 @@
 #include <sstream>
 #include <utility>
 
+#include "core/available_memory.hpp"
 #include "core/require.hpp"
 #include "core/stand.hpp"
-#include "core/available_memory.hpp"
 #include "grid/foliage_stand.hpp"
 #include "grid/neighbours.hpp"
 #include "spp/compensation.hpp"

@@ -26,8 +26,8 @@
 #include <system_error>
 #include <utility>
 
-#include "core/require.hpp"
 #include "core/available_memory.hpp"
+#include "core/require.hpp"
 
 namespace sunfleck {
 namespace fs = std::filesystem;

@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/available_memory.hpp"
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
-#include "core/available_memory.hpp"
 #include "grid/detail/block_visits.hpp"
 #include "grid/detail/density_cells.hpp"
 #include "grid/triangle_clipping.hpp"

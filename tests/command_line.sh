@@ -283,6 +283,34 @@ does "transmittance_blue" voxelize kinds.toml --stand --cell-size 0.1 -o kinds.v
 does "mean_reflectance" voxelize kinds.vdb --json
 does "reflectance_red" voxelize leaf.obj --optics --cell-size 0.1 -o leaf_optics.nvdb
 "$program" trace kinds.toml --paths 1000 -o leaves.csv >/dev/null && grep -q "^dark,0," leaves.csv || fail "trace: no kind"
+# Reflectance factors: of a flat leaf of reflectance 1/2 that fills its period, 1/2 in all directions.
+does "hemisphere" trace leaf.obj --period 1 1 --paths 1000 --brf -60:60:30 --brf-paths 1000 --sun-zenith 30 --albedo 1 \
+  --brf-csv brf.csv --mes brf.mes
+[ "$(wc -l <brf.csv)" -eq 6 ] && grep -q "^-60,0,0\.4999999[0-9]*,0,0\.4999999[0-9]*,0,0,0,0,0,0,0$" brf.csv || fail "--brf-csv: $(cat brf.csv)"
+[ "$(head -1 brf.mes)" = "5	5	-1.000000" ] || fail "--mes: $(head -1 brf.mes)"
+grep -q "^0.523599	1.047198	0.000000	0.500000	0.000000$" brf.mes || fail "--mes: $(cat brf.mes)"
+grep -q "^0.523599	1.047198	3.141593	0.500000	0.000000$" brf.mes || fail "--mes: $(cat brf.mes)"
+printf 'zenith_deg,azimuth_deg\n30,90\n' >views.csv
+printf 'zenith_deg,azimuth_deg\n30\n' >short_views.csv
+printf 'zenith_deg,azimuth_deg\n95,0\n' >low_views.csv
+printf 'name,value,standard_error\nbrf:30:90,0.6,0\nbrf_albedo,0.51,0.1\n' >expected.csv
+printf 'name,value,standard_error\nbrf:31,0.6,0\n' >unknown_name.csv
+printf 'name,value,standard_error\nbrf:30,0.6,-1\n' >negative_error.csv
+only="trace leaf.obj --period 1 1 --albedo 1 --only-brf --brf-paths 1000"
+does '"verdict": "fail"' $only --brf-views views.csv --compare expected.csv --json
+does "reference too uncertain" $only --brf-views views.csv --compare expected.csv
+does '"brf_bands"' $only --brf 0:60:60 --all-bands --json
+does "wrote brf.trace" $only --brf 0:60:60 --checkpoint brf.trace
+refuses "brf.trace: made with views" $only --brf 0:60:30 --checkpoint brf.trace
+refuses "short_views.csv:2" $only --brf-views short_views.csv
+refuses "low_views.csv:2" $only --brf-views low_views.csv
+refuses "unknown_name.csv:2" $only --brf 0:60:30 --compare unknown_name.csv
+refuses "negative_error.csv:2" $only --brf 0:60:30 --compare negative_error.csv
+refuses "--brf 0:60" $only --brf 0:60
+refuses "--brf 0:91:1" $only --brf 0:91:1
+refuses "--only-brf" $only
+refuses "--mes" trace leaf.obj --mes x.mes
+refuses "periodic" trace leaf.obj --brf 0:60:30
 # What other programs are told.
 vdb_print -l stand.vdb >printed || fail "vdb_print: status $?"
 for line in "Name: density" "Name: normal_yz" "class: fog volume" "creator: Sunfleck .*, commit" "leaf_area_m2: " \

@@ -13,6 +13,7 @@
 
 #include "core/random.hpp"
 #include "core/require.hpp"
+#include "render/reference/brf_trace.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
 #include "render/reference/trace_goal.hpp"
@@ -49,6 +50,7 @@ struct Example {
                  .width = 50,
                  .height = 40};
   CameraJob camera{scene, bands, rays, -1.f, 2};
+  BrfJob brf{scene, bands, {{0.2, 0.}, {0.9, 2.}}, 16};
 };
 
 void expectSame(const TraceSums& a, const TraceSums& b) {
@@ -127,11 +129,11 @@ TEST(TraceSums, GiveMeanAndStandardError) {
 }
 
 // Check that any number of threads, any order of parts and any interruption give the same sums to the last bit, for
-// both estimators.
+// all estimators.
 TEST(R1_TraceRun, AnySplitGivesTheSameBits) {
   const Example example;
-  for (const TraceJob* job :
-       {static_cast<const TraceJob*>(&example.job), static_cast<const TraceJob*>(&example.camera)}) {
+  for (const TraceJob* job : {static_cast<const TraceJob*>(&example.job), static_cast<const TraceJob*>(&example.camera),
+                              static_cast<const TraceJob*>(&example.brf)}) {
     constexpr std::uint64_t kUnits = 40;
     const TraceSums expected = whole(*job, kUnits);
     TraceSums threaded(job->bins(), job->groups());
@@ -219,11 +221,15 @@ TEST(R1_TraceRun, GoesOnFromItsFileToTheSameBits) {
       return TraceGoal{.next = [&](const TraceSums& sums,
                                    std::uint64_t seed) { return example.camera.unitsFor(0.2, 64, sums, seed); },
                        .name = "picture"};
+    if (&job == &example.brf)
+      return TraceGoal{
+          .next = [&](const TraceSums& sums, std::uint64_t seed) { return example.brf.unitsFor(0.1, 200, sums, seed); },
+          .name = "views"};
     return until(
         0.02, [&](const TraceSums& sums) { return example.job.relativeError(sums); }, 400);
   };
-  for (const TraceJob* job :
-       {static_cast<const TraceJob*>(&example.job), static_cast<const TraceJob*>(&example.camera)}) {
+  for (const TraceJob* job : {static_cast<const TraceJob*>(&example.job), static_cast<const TraceJob*>(&example.camera),
+                              static_cast<const TraceJob*>(&example.brf)}) {
     const fs::path once = folder / "once.trace", often = folder / "often.trace";
     {
       TraceStore store(once, 1e9, {{"scene", "example"}});
@@ -341,4 +347,21 @@ TEST(R1_TraceRun, RefusesWhatIsNotItsFile) {
   const ForwardJob other(example.scene, example.bands, 128);
   TraceStore store(file, 1e9, {{"scene", "example"}});
   EXPECT_THROW(store.section("light", other), InvalidInput);
+}
+
+// Check that a difference in a long list, of views say, is told by the place where the lists part.
+TEST(TraceIdentity, TellsWhereLongOnesPart) {
+  const std::string many(100'000, 'v');
+  EXPECT_NO_THROW(requireSame("a.trace", {{"views", many}}, {{"views", many}}));
+  for (const std::string& other : {many.substr(0, 60'000) + "other" + many, many + "other", many.substr(0, 5)}) {
+    try {
+      requireSame("a.trace", {{"views", other}}, {{"views", many}});
+      ADD_FAILURE() << "took them for the same";
+    } catch (const InvalidInput& e) {
+      const std::string message = e.what();
+      EXPECT_LT(message.size(), 300u);
+      EXPECT_TRUE(message.starts_with("a.trace: made with views = ... vv")) << message;
+      EXPECT_EQ(message.find("other") != std::string::npos, other.size() > 5);
+    }
+  }
 }

@@ -159,7 +159,8 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
       for (std::size_t i = 0; i < packet.random.size(); ++i)
         for (int band = 0; band < band_count; ++band) {
           const Seen<Lanes::kBands>& seen = packet.seen[i];
-          const double once = double{seen.leaf_once[band]} + double{seen.other_once[band]};
+          const double once =
+              double{seen.leaf_once[band]} + double{seen.wood_once[band]} + double{seen.ground_once[band]};
           const double radiance = once + double{seen.more[band]};
           if (radiance == 0.) continue;
           const std::size_t pixel = parts_->pixel(packet.x[i], packet.y[i], band);
@@ -254,13 +255,7 @@ UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSum
     const double least = double{kLeastUnitsOfTile}, twice = std::max(least, 2. * static_cast<double>(done));
     const auto goal =
         static_cast<std::uint64_t>(std::min({std::ceil(wanted[number]), twice, static_cast<double>(most)}));
-    std::uint64_t more = goal - std::min(goal, done);
-    for (std::uint64_t pass = 0; more > 0; ++pass) {
-      const std::uint64_t unit = pass * groups() + number;
-      if (sums.done(seed).contains(unit)) continue;
-      units.add(unit);
-      --more;
-    }
+    addMissing(units, goal - std::min(goal, done), sums.done(seed), number, groups());
   }
   return units;
 }

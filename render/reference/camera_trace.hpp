@@ -52,8 +52,8 @@ class CameraJob final : public TraceJob {
   std::uint64_t unitsOf(std::uint64_t samples) const;              // that add so many samples to each pixel
   std::vector<CameraResult> results(const TraceSums& sums) const;  // of each band
   // What brings the root mean square standard error of the pixels, relative to the mean of the picture, to `target` in
-  // each band, in steps: missing units of `seed`, more of them for the tiles that are noisier. None when it is there, or
-  // at `most` units of each tile.
+  // each band, in steps: missing units of `seed`, more of them for the tiles that are noisier. None when it is there,
+  // or at `most` units of each tile.
   UnitRanges unitsFor(double target, std::uint64_t most, const TraceSums& sums, std::uint64_t seed) const;
 
  private:

@@ -82,13 +82,13 @@ Json headerOf(const TraceFile& file) {
     Json done = Json::array();
     for (const auto& [seed, units] : section.sums.done()) done.push_back({{"seed", seed}, {"units", units.ranges()}});
     sections.push_back({{"name", section.name},
-                      {"identity", section.identity},
-                      {"bins", section.sums.bins()},
-                      {"groups", section.sums.groups()},
-                      {"done", done},
-                      {"planned", section.planned.ranges()},
-                      {"plan_of", section.plan_of},
-                      {"asked", section.asked}});
+                        {"identity", section.identity},
+                        {"bins", section.sums.bins()},
+                        {"groups", section.sums.groups()},
+                        {"done", done},
+                        {"planned", section.planned.ranges()},
+                        {"plan_of", section.plan_of},
+                        {"asked", section.asked}});
   }
   return {{"run", file.run}, {"sections", sections}};
 }
@@ -210,8 +210,16 @@ void requireSame(const fs::path& path, const TraceIdentity& found, const TraceId
   };
   const auto compare = [&](const std::string& name) {
     const std::string is = valueIn(found, name), should = valueIn(expected, name);
-    if (is != should)
-      throw InvalidInput(fmt::format("{}: made with {} = {}: must be {}", path.string(), name, is, should));
+    if (is == should) return;
+    // Of long lists, where they part.
+    constexpr std::size_t kMostShown = 400, kAround = 40;
+    const bool cut = std::max(is.size(), should.size()) > kMostShown;
+    const auto parting =
+        static_cast<std::size_t>(std::mismatch(is.begin(), is.end(), should.begin(), should.end()).first - is.begin());
+    const auto shown = [&](const std::string& text) {
+      return cut ? "... " + text.substr(parting - std::min(parting, kAround), 2 * kAround) + " ..." : text;
+    };
+    throw InvalidInput(fmt::format("{}: made with {} = {}: must be {}", path.string(), name, shown(is), shown(should)));
   };
   for (const auto& [name, value] : expected) compare(name);
   for (const auto& [name, value] : found) compare(name);

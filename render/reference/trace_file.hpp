@@ -16,8 +16,8 @@ struct TraceSection {
   TraceIdentity identity;
   TraceSums sums;
   std::uint64_t asked = 0;  // units of the whole that this run is, or is a part of; 0 if not told
-  // What the run was about to compute when the file was written, and towards which goal: decisions that rest on what had
-  // been found by then are not made anew, so that an interrupted run goes the same way as one that was not.
+  // What the run was about to compute when the file was written, and towards which goal: decisions that rest on what
+  // had been found by then are not made anew, so that an interrupted run goes the same way as one that was not.
   UnitRanges planned{};
   std::string plan_of{};
 };
@@ -37,8 +37,8 @@ void writeTraceFile(const std::filesystem::path& path, const TraceFile& file);
 // Throws InvalidInput("<path>: ...") on a file that is none, is damaged or of another version of the format.
 TraceFile readTraceFile(const std::filesystem::path& path);
 
-// Adds what `part`, read from `path`, has found to `whole`. Throws InvalidInput when it is of another run or holds units
-// that are there already.
+// Adds what `part`, read from `path`, has found to `whole`. Throws InvalidInput when it is of another run or holds
+// units that are there already.
 void addPart(TraceFile& whole, const TraceFile& part, const std::filesystem::path& path);
 
 // Units [0, asked) that a section has not, of the seeds that it has some of.

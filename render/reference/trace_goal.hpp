@@ -27,8 +27,8 @@ TraceGoal allOf(UnitRanges wanted);
 TraceGoal until(double target, std::function<double(const TraceSums& sums)> error, std::uint64_t most);
 
 // Works towards the goal from what the section has, writing the store's file now and then and at the end. Answers false
-// when time or `progress` ended it early; what was computed by then is in the section. A run that is told to stop in the
-// middle and goes on later finds the same to the last bit.
+// when time or `progress` ended it early; what was computed by then is in the section. A run that is told to stop in
+// the middle and goes on later finds the same to the last bit.
 bool pursue(const TraceGoal& goal, const TraceJob& job, TraceSection& section, TraceStore& store, std::uint64_t seed,
             int threads, const Progress& progress = {});
 

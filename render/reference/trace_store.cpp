@@ -18,7 +18,7 @@ namespace sunfleck {
 TraceLock::TraceLock(const std::filesystem::path& file)
     : path_(std::filesystem::weakly_canonical(file).string() + ".lock") {
   // Whoever had the lock removes the file: what was opened may no longer be what the name stands for.
-  for (struct stat opened {}, named{};;) {
+  for (struct stat opened{}, named{};;) {
     file_ = open(path_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
     if (file_ < 0) throw InvalidInput(file.string() + ": cannot be written: " + std::strerror(errno));
     if (flock(file_, LOCK_EX | LOCK_NB) != 0) {

@@ -43,7 +43,7 @@ class TraceStore {
   // Writes the file, if there is one. What went wrong is kept for failure(), as the run may go on and the next write
   // succeed.
   void write();
-  void writeIfDue();  // if the last time is longer ago than asked for
+  void writeIfDue();                                       // if the last time is longer ago than asked for
   const std::string& failure() const { return failure_; }  // of the last write; empty if it succeeded
 
  private:

@@ -69,4 +69,13 @@ UnitRanges UnitRanges::without(const UnitRanges& other) const {
   return result;
 }
 
+void addMissing(UnitRanges& units, std::uint64_t count, const UnitRanges& done, std::uint64_t remainder,
+                std::uint64_t divisor) {
+  for (std::uint64_t unit = remainder; count > 0; unit += divisor) {
+    if (done.contains(unit)) continue;
+    units.add(unit);
+    --count;
+  }
+}
+
 }  // namespace sunfleck

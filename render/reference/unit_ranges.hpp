@@ -33,4 +33,8 @@ class UnitRanges {
   std::map<std::uint64_t, std::uint64_t> ranges_;  // last by first
 };
 
+// Adds to `units` the lowest `count` of those that leave `remainder` when divided by `divisor` and are not in `done`.
+void addMissing(UnitRanges& units, std::uint64_t count, const UnitRanges& done, std::uint64_t remainder,
+                std::uint64_t divisor);
+
 }  // namespace sunfleck

@@ -17,7 +17,12 @@ namespace sunfleck::detail {
 // seen and by how often its light has been scattered.
 template <int N>
 struct Seen {
-  BandLanes<N> leaf_once, other_once, more;  // other: wood and ground
+  BandLanes<N> leaf_once, wood_once, ground_once, more;
+
+  BandLanes<N>& once(Surface surface) {
+    if (surface == Surface::none) return ground_once;
+    return surface == Surface::leaf ? leaf_once : wood_once;
+  }
 };
 
 // (R2) Paths from the eye, with the sun sampled wherever they meet something, before a black sky.
@@ -51,9 +56,15 @@ class EyePaths {
     for (std::size_t i = 0; i < count; ++i) {
       if (!meets(hits[i], from[i], sight, to_ground[i])) continue;
       const BandLanes<N> weight = BandLanes<N>::all(1.f);
-      if (!dark[i]) addSun(hits[i], weight, hits[i].surface == Surface::leaf ? seen[i].leaf_once : seen[i].other_once);
+      if (!dark[i]) addSun(hits[i], weight, seen[i].once(hits[i].surface));
       goOn(hits[i], weight, random[i], seen[i].more);
     }
+  }
+
+  Seen<N> look(const glm::vec3& from, const Direction& sight, PathRandom& random) const {
+    Seen<N> seen;
+    look(std::span(&from, 1), sight, std::span(&random, 1), std::span(&seen, 1));
+    return seen;
   }
 
   // Where a line of sight through a point starts: right before the box, where positions are exact, but before it meets
