@@ -14,6 +14,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/require.hpp"
 #include "grid/detail/scan_conversion.hpp"
 
 namespace sunfleck {
@@ -41,7 +42,7 @@ Bounds boxOf(const std::vector<glm::uvec3>& triangles, const glm::vec3* position
 // What a thread found in a band.
 struct Found {
   std::vector<detail::Span> leaves, wood;  // of triangles, and of no further interest which
-  std::uint32_t crossings = 0;             // of leaves
+  std::uint64_t crossings = 0;             // of leaves
 };
 
 using Rank = std::uint64_t;  // see rankOf
@@ -161,11 +162,18 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
   if (with_wood)
     find(mesh.wood_triangles, [](Found& band, const detail::Span& span, std::size_t) { band.wood.push_back(span); });
 
-  std::array<std::uint32_t, kBands + 1> band_first{};
+  // Who found something, told before others join in.
+  std::vector<const Workspace::OfThread*> finders;
+  for (const auto& of_thread : workspace.threads) finders.push_back(&of_thread);
+  std::array<std::uint64_t, kBands + 1> counted{};
   for (std::size_t band = 0; band < kBands; ++band) {
-    band_first[band + 1] = band_first[band];
-    for (const auto& of_thread : workspace.threads) band_first[band + 1] += of_thread.found[band].crossings;
+    counted[band + 1] = counted[band];
+    for (const auto* of_thread : finders) counted[band + 1] += of_thread->found[band].crossings;
   }
+  require(counted.back() <= std::numeric_limits<std::uint32_t>::max(), "leaf crossings on the lines of an opacity map",
+          counted.back(), "below 2^32: of fewer pixels");
+  std::array<std::uint32_t, kBands + 1> band_first{};
+  std::copy(counted.begin(), counted.end(), band_first.begin());
   const std::size_t pixels = pixelNumber(0, size_.y);
   first_ = std::make_unique_for_overwrite<std::uint32_t[]>(pixels + 1);
   first_[pixels] = band_first.back();
@@ -183,8 +191,8 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
     auto& next = work.next;
     next.assign(end - begin + 1, 0u);
     work.crossings.resize(band_first[band + 1] - band_first[band]);
-    for (const auto& of_thread : workspace.threads)
-      for (const detail::Span& span : of_thread.found[band].leaves) {
+    for (const auto* of_thread : finders)
+      for (const detail::Span& span : of_thread->found[band].leaves) {
         const std::size_t pixel = firstPixel(span) - begin;
         ++next[pixel];
         --next[pixel + span.length];
@@ -195,8 +203,8 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
       next[pixel] = sum;
       sum += met;
     }
-    for (const auto& of_thread : workspace.threads)
-      for (const detail::Span& span : of_thread.found[band].leaves) {
+    for (const auto* of_thread : finders)
+      for (const detail::Span& span : of_thread->found[band].leaves) {
         std::uint32_t* const next_of_pixel = &next[firstPixel(span) - begin];
         for (std::uint32_t i = 0; i < span.length; ++i)
           work.crossings[next_of_pixel[i]++] = rankOf({span.depth + static_cast<float>(i) * span.slope, span.triangle});
@@ -210,8 +218,8 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
     }
     if (!with_wood) return;
     for (std::size_t pixel = begin; pixel < end; ++pixel) wood_depth_[pixel] = std::numeric_limits<float>::infinity();
-    for (const auto& of_thread : workspace.threads)
-      for (const detail::Span& span : of_thread.found[band].wood) {
+    for (const auto* of_thread : finders)
+      for (const detail::Span& span : of_thread->found[band].wood) {
         float* const depth = &wood_depth_[firstPixel(span)];
         for (std::uint32_t i = 0; i < span.length; ++i)
           depth[i] = std::min(depth[i], span.depth + static_cast<float>(i) * span.slope);

@@ -5,9 +5,11 @@
 #include <exception>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "core/available_memory.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "grid/density_grid.hpp"
@@ -86,6 +88,16 @@ openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridS
 
 void DensityGrid::write(const fs::path& file, const GridSource& source) const {
   initializeOpenVdb();
+  // All grids are made to be written, and then the bytes of the file are looked at.
+  double bytes = 0.;
+  for (const Summary& grid : grids()) bytes += 2. * static_cast<double>(grid.bytes);
+  if (const double most = availableMemory(); bytes > most) {
+    std::ostringstream why;
+    why.precision(3);
+    why << file.string() << ": to be written, its grids take " << bytes * 1e-9 << " GB of memory: must be "
+        << most * 1e-9 << " GB or less";
+    throw InvalidInput(why.str());
+  }
   writeWhole(file, [&](const fs::path& temporary) {
     try {
       const openvdb::GridCPtrVec grids = describedGrids(*cells_, source);

@@ -271,7 +271,7 @@ refuses "--cells" validate leaf.obj --cells 1.5e0
 refuses "--trees" bench stand --trees 1e1 -o dirs
 does "at most 1024 trees" --help scene
 does "Sunfleck" --version
-for command in validate slab tables plant voxelize trace render bench; do does "--json" $command --help; done
+for command in validate slab tables plant voxelize trace merge render bench; do does "--json" $command --help; done
 does "reflectance" slab --omega 1 --thickness 5
 does "1 leaf and 0 wood" plant flat.obj
 does "cells" voxelize leaf.obj -o leaf.vdb --cell-size 0.1
@@ -283,6 +283,31 @@ does "transmittance_blue" voxelize kinds.toml --stand --cell-size 0.1 -o kinds.v
 does "mean_reflectance" voxelize kinds.vdb --json
 does "reflectance_red" voxelize leaf.obj --optics --cell-size 0.1 -o leaf_optics.nvdb
 "$program" trace kinds.toml --paths 1000 -o leaves.csv >/dev/null && grep -q "^dark,0," leaves.csv || fail "trace: no kind"
+# A trace killed at any moment goes on to what it would have told; parts make the whole.
+shares() { grep -v seconds "$1"; }
+run="trace leaf.obj --period 2 2 --paths 2e4 --json"
+"$program" $run >whole.json || fail "$run"
+for delay in 0.05 0.15 0.3; do
+  timeout -s KILL $delay "$program" $run --checkpoint killed.trace --write-every 0 >/dev/null 2>&1
+done
+"$program" $run --checkpoint killed.trace >killed.json || fail "$run --checkpoint"
+[ "$(shares killed.json)" = "$(shares whole.json)" ] || fail "killed: $(diff killed.json whole.json)"
+for part in 1 2 3; do "$program" $run --checkpoint part$part.trace --part $part/3 >/dev/null || fail "--part $part/3"; done
+does "missing" merge part1.trace part3.trace -o two.trace
+does "wrote three.trace" merge part2.trace two.trace -o three.trace
+"$program" $run --checkpoint three.trace >merged.json || fail "merged"
+[ "$(shares merged.json)" = "$(shares whole.json)" ] || fail "merged: $(diff merged.json whole.json)"
+refuses "must not be in another file too" merge part1.trace two.trace -o x.trace
+refuses "made with" trace leaf.obj --period 3 3 --paths 2e4 --checkpoint part1.trace
+refuses "must be a trace file" merge garbage.obj -o x.trace
+refuses "named with the extension .trace" trace leaf.obj --checkpoint x.txt
+refuses "K/N" trace leaf.obj --checkpoint x.trace --part 4/3
+refuses "relative error" trace leaf.obj --target 5x
+refuses "--time" trace leaf.obj --time 5y
+refuses "must be at most 1" trace leaf.obj --other-leaf 0.1 0.95
+refuses "excludes" trace leaf.obj --all-bands --band 1
+does "target_reached\": true" trace leaf.obj --period 2 2 --target 5% --json
+
 # Reflectance factors: of a flat leaf of reflectance 1/2 that fills its period, 1/2 in all directions.
 does "hemisphere" trace leaf.obj --period 1 1 --paths 1000 --brf -60:60:30 --brf-paths 1000 --sun-zenith 30 --albedo 1 \
   --brf-csv brf.csv --mes brf.mes

@@ -17,8 +17,8 @@ namespace {
 
 constexpr float kDegree = std::numbers::pi_v<float> / 180.f;
 
-// A Monte Carlo mean against a known value. Five standard errors of 64 batches are a false alarm of 5e-6; the absolute
-// term is rounding where there is no noise at all.
+// A Monte Carlo mean against a known value. Five standard errors of 64 units and more are a false alarm of 5e-6; the
+// absolute term is rounding where there is no noise at all.
 testing::AssertionResult agrees(const Estimate& found, double expected, double noise = 0.) {
   const double allowed = 5. * std::hypot(found.standard_error, noise) + 2e-6;
   if (std::abs(found.value - expected) <= allowed) return testing::AssertionSuccess();
@@ -74,7 +74,7 @@ TEST(R1_ForwardTrace, ConservesEnergy) {
 }
 
 // Check that a horizontal leaf that fills the box's top receives exactly the sun's irradiance, that a lone flat leaf is
-// lit once, and what becomes of that light. Error: rounding of 64 batches; for the shares see agrees().
+// lit once, and what becomes of that light. Error: rounding of sums; for the shares see agrees().
 TEST(R1_ForwardTrace, HorizontalLeafUnderZenithSun) {
   TreeMesh mesh;
   addPolygon(mesh, mesh.leaf_triangles, rectangle({1, 2, 3}, {1, 0, 0}, {0, 2, 0}));
