@@ -209,6 +209,8 @@ class TraceRun {
     const Spent spent = work(goal, job, section, "tracing reflectance factors");
     if (section.sums.units() == 0) return;
 
+    if (extent_.target > 0.)
+      tellTarget(job.unitsFor(extent_.target, kMostViewUnits, section.sums, run_.seed).count() == 0);
     const std::vector<BrfResult> results = job.results(section.sums);
     const BrfResult& first = results.front();
     for (std::size_t i = 0; i < views.size(); ++i) figures_.push_back({views[i].name, first.views[i].whole});
@@ -284,7 +286,7 @@ class TraceRun {
   }
 
   void tellTarget(bool reached) {
-    json_["target_reached"] = reached;
+    json_["target_reached"] = reached && json_.value("target_reached", true);
     if (!reached) fmt::print(stderr, "sunfleck: the target of {} is not reached\n", options_.target);
   }
 

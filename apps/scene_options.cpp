@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <glm/trigonometric.hpp>
 
+#include "core/require.hpp"
 #include "render/scene_file.hpp"
 
 namespace sunfleck::apps {
@@ -42,7 +44,24 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
       ->group(group);
 }
 
+namespace {
+
+// What says how to read a mesh fits no other scene.
+void requireMeshFor(const SceneOptions& options) {
+  const std::filesystem::path extension = std::filesystem::path(options.scene).extension();
+  if (!extension.empty() && extension != ".toml") return;
+  const char* given = !options.leaf.empty()   ? "--leaf"
+                      : !options.wood.empty() ? "--wood"
+                      : options.scale != 1.f  ? "--scale"
+                      : options.up != "z"     ? "--up"
+                                              : nullptr;
+  if (given) throw InvalidInput(fmt::format("{}: must be for a mesh file, not for {}", given, options.scene));
+}
+
+}  // namespace
+
 Scene readScene(const SceneOptions& options) {
+  requireMeshFor(options);
   ImportRules rules;
   rules.leaf = options.leaf;
   rules.wood = options.wood;

@@ -278,6 +278,7 @@ does "cells" voxelize leaf.obj -o leaf.vdb --cell-size 0.1
 does "cells" voxelize leaf.vdb
 does "one period of 2 m x 3 m" voxelize leaf.obj --stand --period 2 3 -o stand.vdb --cell-size 0.1
 refuses "--stand" voxelize leaf.vdb --stand
+refuses "--leaf: must be for a mesh file" voxelize cherry --leaf 'x*'
 refuses "--cell-size" voxelize leaf.vdb --cell-size 0.1
 does "transmittance_blue" voxelize kinds.toml --stand --cell-size 0.1 -o kinds.vdb
 does "mean_reflectance" voxelize kinds.vdb --json
