@@ -36,9 +36,7 @@ namespace {
 constexpr double kPaths = 4e6;
 // A run that is to reach an error stops here at the latest.
 constexpr double kMostPaths = 1e15;
-constexpr std::uint64_t kMostTileUnits = 1'000'000;
-// So do views that are to reach one.
-constexpr std::uint64_t kMostViewUnits = 1'000'000;
+constexpr std::uint64_t kMostUnits = 1'000'000;  // of each tile or view
 
 const std::array<std::string, kBands> kBandNames{"red", "green", "blue"};
 
@@ -168,17 +166,9 @@ class TraceRun {
         unitSize(store_.identity("picture"), "samples per unit", static_cast<std::uint64_t>(samplesPerUnit(samples)));
     const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit));
     TraceSection& section = store_.section("picture", job);
-    TraceGoal goal = allOf(partOf(job.unitsOf(samples), extent_.part, extent_.parts));
-    section.asked = extent_.target == 0. ? job.unitsOf(samples) : 0;
-    if (extent_.target > 0.)
-      goal = {.next = [&](const auto& sums,
-                          std::uint64_t seed) { return job.unitsFor(extent_.target, kMostTileUnits, sums, seed); },
-              .name = fmt::format("picture error {}", extent_.target)};
-    const Spent spent = work(goal, job, section, "tracing the picture");
+    const Spent spent = workOnGroups(job, job.unitsOf(samples), section, "tracing the picture");
     if (section.sums.units() == 0) return;
 
-    if (extent_.target > 0.)
-      tellTarget(job.unitsFor(extent_.target, kMostTileUnits, section.sums, run_.seed).count() == 0);
     const std::vector<CameraResult> results = job.results(section.sums);
     const CameraResult& result = results.front();
     if (!options_.picture.empty())
@@ -200,17 +190,9 @@ class TraceRun {
     const std::uint64_t per_unit = unitSize(store_.identity("brf"), "paths per unit", pathsPerUnit(paths));
     const BrfJob job(rays_, bands_, directions, per_unit);
     TraceSection& section = store_.section("brf", job);
-    TraceGoal goal = allOf(partOf(job.unitsOf(paths), extent_.part, extent_.parts));
-    section.asked = extent_.target == 0. ? job.unitsOf(paths) : 0;
-    if (extent_.target > 0.)
-      goal = {.next = [&](const auto& sums,
-                          std::uint64_t seed) { return job.unitsFor(extent_.target, kMostViewUnits, sums, seed); },
-              .name = fmt::format("error of views {}", extent_.target)};
-    const Spent spent = work(goal, job, section, "tracing reflectance factors");
+    const Spent spent = workOnGroups(job, job.unitsOf(paths), section, "tracing reflectance factors");
     if (section.sums.units() == 0) return;
 
-    if (extent_.target > 0.)
-      tellTarget(job.unitsFor(extent_.target, kMostViewUnits, section.sums, run_.seed).count() == 0);
     const std::vector<BrfResult> results = job.results(section.sums);
     const BrfResult& first = results.front();
     for (std::size_t i = 0; i < views.size(); ++i) figures_.push_back({views[i].name, first.views[i].whole});
@@ -262,6 +244,24 @@ class TraceRun {
     spent.seconds = elapsed.seconds();
     spent.cpu_seconds = elapsed.cpuSeconds();
     spent.units = section.sums.units();
+    return spent;
+  }
+
+  // The same for a job whose tiles or views take as many units as their own noise asks for: `units` in all, or what
+  // brings it to the target.
+  template <typename Job>
+  Spent workOnGroups(const Job& job, std::uint64_t units, TraceSection& section, const std::string& label) {
+    if (extent_.target == 0.) {
+      section.asked = units;
+      return work(allOf(partOf(units, extent_.part, extent_.parts)), job, section, label);
+    }
+    section.asked = 0;
+    const TraceGoal goal{
+        .next = [&](const TraceSums& sums,
+                    std::uint64_t seed) { return job.unitsFor(extent_.target, kMostUnits, sums, seed); },
+        .name = fmt::format("error {}", extent_.target)};
+    const Spent spent = work(goal, job, section, label);
+    tellTarget(goal.next(section.sums, run_.seed).count() == 0);
     return spent;
   }
 

@@ -286,11 +286,14 @@ does "reflectance_red" voxelize leaf.obj --optics --cell-size 0.1 -o leaf_optics
 "$program" trace kinds.toml --paths 1000 -o leaves.csv >/dev/null && grep -q "^dark,0," leaves.csv || fail "trace: no kind"
 # A trace killed at any moment goes on to what it would have told; parts make the whole.
 shares() { grep -v seconds "$1"; }
-run="trace leaf.obj --period 2 2 --paths 2e4 --json"
+run="trace leaf.obj --period 2 2 --paths 4e5 --json"
 "$program" $run >whole.json || fail "$run"
-for delay in 0.05 0.15 0.3; do
+kills=0  # in the middle: with some of the run in the file
+for delay in 0.1 0.2 0.3 0.4 0.6 0.8 1.2; do
   timeout -s KILL $delay "$program" $run --checkpoint killed.trace --write-every 0 >/dev/null 2>&1
-done
+  [ $? -eq 137 ] && [ -e killed.trace ] && kills=$((kills + 1))
+done 2>/dev/null
+[ $kills -gt 0 ] || fail "no trace was killed in the middle"
 "$program" $run --checkpoint killed.trace >killed.json || fail "$run --checkpoint"
 [ "$(shares killed.json)" = "$(shares whole.json)" ] || fail "killed: $(diff killed.json whole.json)"
 for part in 1 2 3; do "$program" $run --checkpoint part$part.trace --part $part/3 >/dev/null || fail "--part $part/3"; done
