@@ -5,7 +5,6 @@
 
 #include "core/elapsed.hpp"
 #include "core/require.hpp"
-#include "render/reference/detail/cosine_law.hpp"
 #include "render/reference/detail/identity_text.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
@@ -55,20 +54,23 @@ class ForwardPaths {
     BandLanes<N> weight = BandLanes<N>::all(1.f);
     int reflections = 0, passes = 0;
     for (int scatterings = 0;; ++scatterings) {
-      const Hit hit = scene_.closest(from, direction, Coherence::incoherent);
+      Hit hit = scene_.closest(from, direction, Coherence::incoherent);
       const bool none = hit.surface == Surface::none;
       if (none) leave(direction.z >= 0.f ? Layout::upward : Layout::downward, weight, reflections, passes);
       if (none && direction.z >= 0.f) return;
+      if (none) meetGround(hit, from, direction);
       if (scatterings == 0) arriveDirect(hit);
       if (hit.surface == Surface::leaf) addTo(layout_.leafSide(hit.leaf, hit.front), weight);
       const BandLanes<N> arriving = weight;
-      Fate fate = scatter(optics_.of(hit), weight, random);
-      if (scatterings == kMostScatterings) fate = Fate::absorbed;
+      Onward onward = optics_.scatter(hit, weight, random);
+      if (scatterings == kMostScatterings) onward.fate = Fate::absorbed;
+      const Fate fate = onward.fate;
       if (fate == Fate::absorbed) weight = {};
       keep(layout_.total(absorbedBy(hit.surface), 0), arriving, weight);
       if (fate == Fate::absorbed) return;
       if (hit.surface == Surface::leaf) ++(fate == Fate::passed ? passes : reflections);
-      goOn(hit, fate, from, direction, random);
+      from = scene_.leave(hit.position, onward.side);
+      direction = onward.direction;
     }
   }
 
@@ -102,16 +104,11 @@ class ForwardPaths {
       tally_.add(first + band, share_ * double{weight[static_cast<int>(band)]});
   }
 
-  void goOn(const Hit& hit, Fate fate, glm::vec3& from, glm::vec3& direction, PathRandom& random) {
-    if (hit.surface == Surface::none) {
-      from = scene_.wrapped(from + (scene_.low - from.z) / direction.z * direction);
-      from.z = scene_.low;
-      direction = lambertDirection({0.f, 0.f, 1.f}, random);
-      return;
-    }
-    const glm::vec3 side = fate == Fate::passed ? -hit.normal : hit.normal;
-    from = scene_.leave(hit.position, side);
-    direction = lambertDirection(side, random);
+  // Makes of a hit on nothing, on the way down, one on the ground.
+  void meetGround(Hit& hit, const glm::vec3& from, const glm::vec3& direction) const {
+    hit.position = scene_.wrapped(from + (scene_.low - from.z) / direction.z * direction);
+    hit.position.z = scene_.low;
+    hit.normal = {0.f, 0.f, 1.f};
   }
 
   const RayScene::Geometry& scene_;

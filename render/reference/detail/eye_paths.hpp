@@ -3,10 +3,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 
-#include "render/reference/detail/cosine_law.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/detail/scene_optics.hpp"
@@ -98,11 +96,9 @@ class EyePaths {
   // Follows a path on from where it met something and adds what it sees there.
   void goOn(Hit hit, BandLanes<N> weight, PathRandom& random, BandLanes<N>& seen) const {
     for (int scatterings = 1; scatterings < kMostScatterings; ++scatterings) {
-      const Fate fate = scatter(optics_.of(hit), weight, random);
-      if (fate == Fate::absorbed) return;
-      const glm::vec3 side = fate == Fate::passed ? -hit.normal : hit.normal;
-      const glm::vec3 from = scene_.leave(hit.position, side);
-      const glm::vec3 direction = lambertDirection(side, random);
+      const Onward onward = optics_.scatter(hit, weight, random);
+      if (onward.fate == Fate::absorbed) return;
+      const glm::vec3 from = scene_.leave(hit.position, onward.side), direction = onward.direction;
       const float to_ground = toGround(from, direction);
       hit = scene_.closest(from, direction, Coherence::incoherent, to_ground);
       if (!meets(hit, from, direction, to_ground)) return;
@@ -111,24 +107,18 @@ class EyePaths {
     }
   }
 
-  // What a surface sends on of the sun's light to the side its normal points to.
-  const BandLanes<N>& shareOfSun(const Hit& hit) const {
-    const SurfaceOptics<N>& surface = optics_.of(hit);
-    return glm::dot(hit.normal, to_sun_) > 0.f ? surface.reflectance : surface.transmittance;
-  }
-
-  // Whether that is anything, and where the light would come in.
+  // Whether a surface sends anything on of the sun's light, and where the light would come in.
   bool sendsSun(const Hit& hit, glm::vec3& lit) const {
     const float cosine = glm::dot(hit.normal, to_sun_);
-    if (cosine == 0.f || shareOfSun(hit).largest() == 0.f) return false;
+    const SurfaceOptics<N>& surface = optics_.of(hit);
+    if (cosine == 0.f || (cosine > 0.f ? surface.reflectance : surface.transmittance).largest() == 0.f) return false;
     lit = scene_.leave(hit.position, cosine > 0.f ? hit.normal : -hit.normal);
     return true;
   }
 
   void addSun(const Hit& hit, const BandLanes<N>& weight, BandLanes<N>& seen) const {
-    const BandLanes<N>& share = shareOfSun(hit);
-    const float towards = std::abs(glm::dot(hit.normal, to_sun_)) * std::numbers::inv_pi_v<float>;
-    for (int band = 0; band < N; ++band) seen[band] += towards * weight[band] * share[band];
+    const BandLanes<N> sent = optics_.sent(hit, to_sun_);
+    for (int band = 0; band < N; ++band) seen[band] += weight[band] * sent[band];
   }
 
   const RayScene::Geometry& scene_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <glm/vec3.hpp>
+
 #include "render/reference/detail/band_lanes.hpp"
 #include "render/reference/detail/path_random.hpp"
 
@@ -19,6 +21,13 @@ struct SurfaceOptics {
 };
 
 enum class Fate { absorbed, reflected, passed };
+
+// Where a path goes on to.
+struct Onward {
+  Fate fate = Fate::absorbed;
+  glm::vec3 side{0.f};       // normal of the surface on the side the path leaves by, unit
+  glm::vec3 direction{0.f};  // unit
+};
 
 // What becomes of a path that arrives with `weight`: which side it leaves by is drawn for all bands at once, by what
 // they send there together, and the weights make up for it; a light path goes on by chance. Unbiased in every band. Of

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <variant>
 #include <vector>
 
+#include "render/reference/detail/cosine_law.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/trace_light.hpp"
@@ -33,6 +36,24 @@ class SceneOptics {
     return hit.surface == Surface::leaf ? of_kinds_[hit.kind].leaf : of_kinds_[hit.kind].wood;
   }
   const SurfaceOptics<N>& ground() const { return ground_; }
+
+  // What becomes of a path that met `hit`: where it goes on to, and with what weight.
+  Onward scatter(const Hit& hit, BandLanes<N>& weight, PathRandom& random) const {
+    Onward onward{.fate = detail::scatter(of(hit), weight, random)};
+    if (onward.fate == Fate::absorbed) return onward;
+    onward.side = onward.fate == Fate::passed ? -hit.normal : hit.normal;
+    onward.direction = lambertDirection(onward.side, random);
+    return onward;
+  }
+
+  // The share of the light from the unit vector `to_light` that is sent back along a line of sight that met `hit`, per
+  // solid angle and for irradiance 1 on a plane that faces the light: BRDF or BTDF times the light's cosine [1/sr].
+  BandLanes<N> sent(const Hit& hit, const glm::vec3& to_light) const {
+    const float cosine = glm::dot(hit.normal, to_light);
+    BandLanes<N> share = cosine > 0.f ? of(hit).reflectance : of(hit).transmittance;
+    share *= std::abs(cosine) * std::numbers::inv_pi_v<float>;
+    return share;
+  }
 
  private:
   struct Kind {
