@@ -136,7 +136,8 @@ class TraceRun {
                                : allOf(partOf(units, extent_.part, extent_.parts));
     const Spent spent = work(goal, job, section, "tracing light");
     if (section.sums.units() == 0) return;
-    if (extent_.target > 0.) tellTarget(job.relativeError(section.sums) <= extent_.target);
+    if (extent_.target > 0.)
+      tellTarget(section.sums.units() >= kLeastUnits && job.relativeError(section.sums) <= extent_.target);
 
     const std::vector<ForwardResult> results = job.results(section.sums);
     const ForwardResult& first = results.front();
@@ -261,7 +262,7 @@ class TraceRun {
                     std::uint64_t seed) { return job.unitsFor(extent_.target, kMostUnits, sums, seed); },
         .name = fmt::format("error {}", extent_.target)};
     const Spent spent = work(goal, job, section, label);
-    tellTarget(goal.next(section.sums, run_.seed).count() == 0);
+    tellTarget(job.reached(extent_.target, section.sums));
     return spent;
   }
 

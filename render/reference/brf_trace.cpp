@@ -45,6 +45,9 @@ struct BrfJob::Parts {
     return {.whole = part(0), .leaf_once = part(1), .wood_once = part(2), .ground_once = part(3), .more = part(4)};
   }
 
+  // Units of a view that bring its error to the target, by what is known of its noise.
+  double wanted(double target, const TraceSums& sums, std::uint64_t group) const;
+
   const RayScene::Geometry& scene;
   std::vector<TraceLight> bands;
   std::vector<ViewDirection> views;
@@ -101,7 +104,7 @@ void BrfJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, con
   const double factor = std::numbers::pi / (-double{sun.z} * static_cast<double>(count));
   parts_->optics.visit([&](const auto& optics) {
     const EyePaths paths(parts_->scene, optics, sun, parts_->scene.low);
-    const EvenSet set(seed, unit);
+    const EvenSet set(Stream::reflectance, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
       PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));
       const glm::vec3 from = parts_->onTop(random.pair());
@@ -132,23 +135,34 @@ std::vector<BrfResult> BrfJob::results(const TraceSums& sums) const {
   return results;
 }
 
+double BrfJob::Parts::wanted(double target, const TraceSums& sums, std::uint64_t group) const {
+  double wanted = double{kLeastUnitsOfView};
+  for (int band = 0; band < static_cast<int>(bands.size()); ++band) {
+    const Estimate factor = sums.estimate(bin(group, band), group);
+    if (factor.value > 0.)
+      wanted = std::max(wanted, static_cast<double>(sums.units(group)) *
+                                    std::pow(factor.standard_error / (target * factor.value), 2));
+  }
+  return wanted;
+}
+
 UnitRanges BrfJob::unitsFor(double target, std::uint64_t most, const TraceSums& sums, std::uint64_t seed) const {
   UnitRanges units;
   for (std::uint64_t group = 0; group < groups(); ++group) {
     const std::uint64_t done = sums.units(group);
-    double wanted = double{kLeastUnitsOfView};
-    for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band) {
-      const Estimate factor = sums.estimate(parts_->bin(group, band), group);
-      if (factor.value > 0.)
-        wanted =
-            std::max(wanted, static_cast<double>(done) * std::pow(factor.standard_error / (target * factor.value), 2));
-    }
     // At most twice what there is, as what is known of the noise is noisy itself.
+    const double wanted = parts_->wanted(target, sums, group);
     const double twice = std::max(double{kLeastUnitsOfView}, 2. * static_cast<double>(done));
     const auto goal = static_cast<std::uint64_t>(std::min({std::ceil(wanted), twice, static_cast<double>(most)}));
     addMissing(units, goal - std::min(goal, done), sums.done(seed), group, groups());
   }
   return units;
+}
+
+bool BrfJob::reached(double target, const TraceSums& sums) const {
+  for (std::uint64_t group = 0; group < groups(); ++group)
+    if (static_cast<double>(sums.units(group)) < parts_->wanted(target, sums, group)) return false;
+  return true;
 }
 
 }  // namespace sunfleck

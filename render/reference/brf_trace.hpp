@@ -57,6 +57,8 @@ class BrfJob final : public TraceJob {
   // What brings the standard error of every view, relative to its reflectance factor, to `target` in each band: more
   // units for the views that are noisier. Nothing when it is there, or at `most` units of each view.
   UnitRanges unitsFor(double target, std::uint64_t most, const TraceSums& sums, std::uint64_t seed) const;
+  // Whether what was found is that good; not when only the `most` ended it.
+  bool reached(double target, const TraceSums& sums) const;
 
  private:
   struct Parts;

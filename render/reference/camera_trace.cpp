@@ -95,6 +95,7 @@ struct CameraJob::Parts {
   }
 
   CameraResult result(const TraceSums& sums, int band) const;
+  std::vector<double> wanted(double target, const TraceSums& sums) const;  // units of each tile, see unitsFor
 
   const RayScene::Geometry& scene;
   std::vector<TraceLight> bands;
@@ -173,7 +174,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
     std::uint64_t pixel_of_run = unit * kTileSide * kTileSide;
     for (int y = tile.top; y < tile.bottom; ++y)
       for (int x = tile.left; x < tile.right && !stopped.load(std::memory_order_relaxed); ++x, ++pixel_of_run) {
-        const EvenSet set(seed, pixel_of_run);
+        const EvenSet set(Stream::picture, seed, pixel_of_run);
         for (std::uint32_t i = 0; i < samples; ++i) {
           PathRandom random(set, pixel_of_run * samples + i, i);
           const Pair at = random.pair();
@@ -228,26 +229,31 @@ std::vector<CameraResult> CameraJob::results(const TraceSums& sums) const {
 
 // With v the sum over a tile's pixels of the variance that a unit leaves, n units of each tile leave sum v / n. For the
 // least work, n goes as sqrt(v).
-UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSums& sums, std::uint64_t seed) const {
-  const double pixels = double(parts_->rays.width) * double(parts_->rays.height);
-  std::vector<double> wanted(groups(), double{kLeastUnitsOfTile});
-  for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band) {
-    std::vector<double> deviation(groups());  // sqrt(v)
+std::vector<double> CameraJob::Parts::wanted(double target, const TraceSums& sums) const {
+  const double pixels = double(rays.width) * double(rays.height);
+  std::vector<double> wanted(tiles(), double{kLeastUnitsOfTile});
+  for (int band = 0; band < static_cast<int>(bands.size()); ++band) {
+    std::vector<double> deviation(tiles());  // sqrt(v)
     double deviations = 0., radiance = 0.;
-    for (std::uint64_t number = 0; number < groups(); ++number) {
-      const Tile tile = parts_->tile(number);
+    for (std::uint64_t number = 0; number < tiles(); ++number) {
+      const Tile of = tile(number);
       double variance = 0.;
-      for (int y = tile.top; y < tile.bottom; ++y)
-        for (int x = tile.left; x < tile.right; ++x)
-          variance += std::pow(sums.estimate(parts_->pixel(x, y, band), number).standard_error, 2);
+      for (int y = of.top; y < of.bottom; ++y)
+        for (int x = of.left; x < of.right; ++x)
+          variance += std::pow(sums.estimate(pixel(x, y, band), number).standard_error, 2);
       deviation[number] = std::sqrt(variance * static_cast<double>(sums.units(number)));
       deviations += deviation[number];
-      radiance += tile.pixels() * sums.estimate(parts_->tileMean(number, band), number).value;
+      radiance += of.pixels() * sums.estimate(tileMean(number, band), number).value;
     }
     const double allowed = std::pow(target * radiance / pixels, 2) * pixels;  // sum over pixels of squared errors
-    for (std::uint64_t number = 0; number < groups() && allowed > 0.; ++number)
+    for (std::uint64_t number = 0; number < tiles() && allowed > 0.; ++number)
       wanted[number] = std::max(wanted[number], deviation[number] * deviations / allowed);
   }
+  return wanted;
+}
+
+UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSums& sums, std::uint64_t seed) const {
+  const std::vector<double> wanted = parts_->wanted(target, sums);
   UnitRanges units;
   for (std::uint64_t number = 0; number < groups(); ++number) {
     const std::uint64_t done = sums.units(number);
@@ -258,6 +264,13 @@ UnitRanges CameraJob::unitsFor(double target, std::uint64_t most, const TraceSum
     addMissing(units, goal - std::min(goal, done), sums.done(seed), number, groups());
   }
   return units;
+}
+
+bool CameraJob::reached(double target, const TraceSums& sums) const {
+  const std::vector<double> wanted = parts_->wanted(target, sums);
+  for (std::uint64_t number = 0; number < groups(); ++number)
+    if (static_cast<double>(sums.units(number)) < wanted[number]) return false;
+  return true;
 }
 
 int samplesPerUnit(std::uint64_t samples) {

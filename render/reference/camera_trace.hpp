@@ -55,6 +55,8 @@ class CameraJob final : public TraceJob {
   // each band, in steps: missing units of `seed`, more of them for the tiles that are noisier. None when it is there,
   // or at `most` units of each tile.
   UnitRanges unitsFor(double target, std::uint64_t most, const TraceSums& sums, std::uint64_t seed) const;
+  // Whether what was found is that good; not when only the `most` ended it.
+  bool reached(double target, const TraceSums& sums) const;
 
  private:
   struct Parts;

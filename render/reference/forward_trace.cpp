@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/elapsed.hpp"
 #include "core/require.hpp"
@@ -30,15 +31,35 @@ struct Layout {
   std::size_t orders(Leaving how) const { return direct() + 1 + how * OrderTable::kBins * bands; }
   std::size_t order(Leaving how, std::size_t bin, int band) const { return orders(how) + bin * bands + index(band); }
 
-  // Of each leaf, front and back: all light of each band, and the direct.
+  // Of each leaf: the light of each band on its front, on its back, and on both; and the direct on both.
+  std::size_t firstLeaf() const { return direct() + 1 + 2 * OrderTable::kBins * bands; }
+  std::size_t ofLeaf() const { return 3 * bands + 1; }
   std::size_t leafSide(std::size_t leaf, bool front) const {
-    return direct() + 1 + 2 * OrderTable::kBins * bands + (2 * leaf + (front ? 0 : 1)) * (bands + 1);
+    return firstLeaf() + leaf * ofLeaf() + (front ? 0 : bands);
   }
+  std::size_t leafBoth(std::size_t leaf) const { return leafSide(leaf, true) + 2 * bands; }
+  std::size_t leafDirect(std::size_t leaf) const { return leafBoth(leaf) + bands; }
   std::size_t bins() const { return leafSide(leaves, true); }
+
+  // The bin of both sides of a leaf that the bin of one is part of; none if it is another.
+  std::optional<std::size_t> bothOf(std::size_t bin) const {
+    if (bin < firstLeaf()) return {};
+    const std::size_t first = (bin - firstLeaf()) % ofLeaf();
+    if (first >= 2 * bands) return {};
+    return bin + (first < bands ? 2 : 1) * bands;
+  }
 
  private:
   static std::size_t index(int band) { return static_cast<std::size_t>(band); }
 };
+
+// One path may meet both sides of a leaf: what a unit found on both goes into a bin of its own, whose spread tells how
+// sure it is.
+void addBothSides(const Layout& layout, UnitTally& tally) {
+  const std::vector<std::uint32_t> met(tally.met().begin(), tally.met().end());
+  for (const std::uint32_t bin : met)
+    if (const std::optional<std::size_t> both = layout.bothOf(bin)) tally.add(*both, tally.value(bin));
+}
 
 template <int N>
 class ForwardPaths {
@@ -88,7 +109,7 @@ class ForwardPaths {
 
   void arriveDirect(const Hit& hit) {
     if (hit.surface == Surface::none) tally_.add(layout_.direct(), share_);
-    if (hit.surface == Surface::leaf) tally_.add(layout_.leafSide(hit.leaf, hit.front) + layout_.bands, share_);
+    if (hit.surface == Surface::leaf) tally_.add(layout_.leafDirect(hit.leaf), share_);
   }
 
   // Subtracted in double precision, so that nothing gets lost in rounding.
@@ -166,12 +187,13 @@ void ForwardJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally,
   parts_->optics.visit([&](const auto& optics) {
     ForwardPaths paths(parts_->scene, parts_->faces, parts_->bands.front().sun, optics, parts_->layout,
                        1. / static_cast<double>(count), tally);
-    const EvenSet set(seed, unit);
+    const EvenSet set(Stream::light, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
       PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));
       paths.trace(random);
     }
   });
+  addBothSides(parts_->layout, tally);
 }
 
 std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
@@ -192,18 +214,15 @@ std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
     }
     for (std::size_t leaf = 0; leaf < layout.leaves; ++leaf) {
       const double per_area = parts_->faces.flux() / parts_->scene.leaf_area[leaf];
-      const auto irradiance = [&](bool front, std::size_t at) {
-        const Estimate share = sums.estimate(layout.leafSide(leaf, front) + at);
+      const auto irradiance = [&](std::size_t bin) {
+        const Estimate share = sums.estimate(bin);
         return Estimate{per_area * share.value, per_area * share.standard_error};
       };
-      // Light on one side of a leaf and light on the other come by different paths.
-      const auto both = [](const Estimate& a, const Estimate& b) {
-        return Estimate{a.value + b.value, std::hypot(a.standard_error, b.standard_error)};
-      };
-      r.leaf_front.push_back(irradiance(true, static_cast<std::size_t>(band)));
-      r.leaf_back.push_back(irradiance(false, static_cast<std::size_t>(band)));
-      r.leaf_direct.push_back(both(irradiance(true, layout.bands), irradiance(false, layout.bands)));
-      const Estimate whole = both(r.leaf_front.back(), r.leaf_back.back());
+      const auto at = static_cast<std::size_t>(band);
+      r.leaf_front.push_back(irradiance(layout.leafSide(leaf, true) + at));
+      r.leaf_back.push_back(irradiance(layout.leafSide(leaf, false) + at));
+      r.leaf_direct.push_back(irradiance(layout.leafDirect(leaf)));
+      const Estimate whole = irradiance(layout.leafBoth(leaf) + at);
       r.leaf_irradiance.push_back(whole.value);
       r.leaf_standard_error.push_back(whole.standard_error);
     }

@@ -139,7 +139,7 @@ class SlabJob final : public TraceJob {
   void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const override {
     SlabPaths paths(slab_, measures_, 1. / static_cast<double>(paths_per_unit_), tally);
     for (std::uint64_t i = 0; i < paths_per_unit_ && !stopped.load(std::memory_order_relaxed); ++i) {
-      PathRandom random(seed, unit * paths_per_unit_ + i);
+      PathRandom random(Stream::slab, seed, unit * paths_per_unit_ + i);
       paths.trace(random);
     }
   }

@@ -14,17 +14,22 @@ struct Pair {
   float u = 0.f, v = 0.f;
 };
 
+// What random numbers are for: those of jobs of different kinds are independent also where their seeds are the same.
+enum class Stream : std::uint32_t { light, picture, reflectance, slab };
+
 // A set of paths whose first random numbers are points of one Owen-scrambled Sobol' sequence: together they fill the
 // square more evenly than chance does. Sets of other numbers are scrambled independently.
 struct EvenSet {
-  EvenSet(std::uint64_t of_seed, std::uint64_t number) : seed(of_seed) {
-    const auto random =
-        r123::Philox4x32()({{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), 0, kOfSets}},
-                           {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}});
+  EvenSet(Stream of_stream, std::uint64_t of_seed, std::uint64_t number) : stream(of_stream), seed(of_seed) {
+    const auto random = r123::Philox4x32()(
+        {{static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), 0, counterOf(stream) + 1}},
+        {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}});
     scramble = {random[0], random[1], random[2]};
   }
-  static constexpr std::uint32_t kOfSets = 1;  // tells its numbers from those of paths
+  // The last word of the counter: even for paths, odd for sets.
+  static std::uint32_t counterOf(Stream stream) { return 2 * static_cast<std::uint32_t>(stream); }
 
+  Stream stream;
   std::uint64_t seed;
   std::array<std::uint32_t, 3> scramble;
 };
@@ -36,9 +41,10 @@ class PathRandom {
  public:
   // `path`: its number among all of the seed; it is the `index`-th of `set`.
   PathRandom(const EvenSet& set, std::uint64_t path, std::uint32_t index)
-      : PathRandom(set.seed, path, set.scramble, index, 0) {}
+      : PathRandom(set.stream, set.seed, path, set.scramble, index, 0) {}
   // A path on its own.
-  PathRandom(std::uint64_t seed, std::uint64_t path) : PathRandom(seed, path, {}, 0, kEvenPairs) {}
+  PathRandom(Stream stream, std::uint64_t seed, std::uint64_t path)
+      : PathRandom(stream, seed, path, {}, 0, kEvenPairs) {}
 
   std::uint32_t bits() {
     if (taken_ == 4) {
@@ -69,10 +75,11 @@ class PathRandom {
  private:
   static constexpr std::uint32_t kEvenPairs = 3;
 
-  PathRandom(std::uint64_t seed, std::uint64_t path, const std::array<std::uint32_t, 3>& scramble, std::uint32_t index,
-             std::uint32_t even_pairs)
+  PathRandom(Stream stream, std::uint64_t seed, std::uint64_t path, const std::array<std::uint32_t, 3>& scramble,
+             std::uint32_t index, std::uint32_t even_pairs)
       : key_{{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}},
-        counter_{{static_cast<std::uint32_t>(path), static_cast<std::uint32_t>(path >> 32), 0, 0}},
+        counter_{
+            {static_cast<std::uint32_t>(path), static_cast<std::uint32_t>(path >> 32), 0, EvenSet::counterOf(stream)}},
         index_(index),
         scramble_(scramble),
         even_pairs_(even_pairs) {}
