@@ -135,7 +135,9 @@ TEST(R12_BrfTrace, ReachesTheErrorItIsAskedFor) {
   for (const BrfResult& result : job.results(sums))
     for (const ReflectanceParts& view : result.views) EXPECT_LE(view.whole.standard_error, 0.02 * view.whole.value);
   EXPECT_GT(rounds, 1);
+  EXPECT_TRUE(job.reached(0.02, sums));
   EXPECT_EQ(job.unitsFor(0.001, 20, sums, 1).countOf(0, job.groups()), 0u);  // more than 20 are there
+  EXPECT_FALSE(job.reached(0.001, sums));
 }
 
 TEST(R12_BrfTrace, RefusesInvalidInput) {

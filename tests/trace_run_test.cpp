@@ -301,6 +301,7 @@ TEST(R1_TraceRun, FillsHolesTowardsAnError) {
       .name = "picture"};
   EXPECT_TRUE(pursue(goal, example.camera, section, store, 1, 2));
   EXPECT_EQ(example.camera.unitsFor(0.2, 64, section.sums, 1).count(), 0u);
+  EXPECT_FALSE(example.camera.reached(0.01, section.sums));
   EXPECT_TRUE(section.sums.done(1).contains(0));
   TraceSection& light = store.section("light", example.job);
   pursue(allOf({5, 90}), example.job, light, store, 1, 1);

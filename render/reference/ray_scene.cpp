@@ -23,14 +23,15 @@ void keepFirstError(void* text, RTCError code, const char* message) {
 }
 
 void attachTriangles(RTCDevice device, RTCScene scene, unsigned number, const std::vector<glm::vec3>& vertices,
-                     const std::vector<glm::uvec3>& triangles) {
+                     const std::vector<glm::uvec3>& triangles, const glm::vec3& pivot) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
                                          vertices.size());
   void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
                                           triangles.size());
   if (points && corners) {
-    std::memcpy(points, vertices.data(), vertices.size() * sizeof(glm::vec3));
+    std::transform(vertices.begin(), vertices.end(), static_cast<glm::vec3*>(points),
+                   [&](const glm::vec3& vertex) { return vertex - pivot; });
     std::memcpy(corners, triangles.data(), triangles.size() * sizeof(glm::uvec3));
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, number);
@@ -50,10 +51,10 @@ void attachInstance(RTCDevice device, RTCScene scene, unsigned number, RTCScene 
   rtcReleaseGeometry(instance);
 }
 
-glm::vec4 planeOf(const TreeMesh& mesh, const glm::uvec3& triangle) {
-  const glm::dvec3 a = mesh.vertices[triangle.x];
-  const glm::dvec3 b = mesh.vertices[triangle.y];
-  const glm::dvec3 c = mesh.vertices[triangle.z];
+glm::vec4 planeOf(const TreeMesh& mesh, const glm::uvec3& triangle, const glm::vec3& pivot) {
+  const glm::dvec3 a = mesh.vertices[triangle.x] - pivot;
+  const glm::dvec3 b = mesh.vertices[triangle.y] - pivot;
+  const glm::dvec3 c = mesh.vertices[triangle.z] - pivot;
   const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
   return glm::vec4(glm::dvec4(normal, glm::dot(normal, (a + b + c) / 3.)));
 }
@@ -114,11 +115,14 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
   origin = placed.origin;
   copies = std::move(placed.copies);
   period = stand.period;
-  stand_box = placed.box;
-  box = {.low = stand_box.low - origin, .high = stand_box.high - origin};
+  box = placed.box;
+  stand_box = {.low = box.low + origin, .high = box.high + origin};
   // A periodic stand's trees may be larger than its period, and their vertices are as exact as their size allows.
   Bounds coordinates = box;
-  for (const TreeMesh* mesh : kinds) coordinates.include(bounds(*mesh));
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    const Bounds of_kind = bounds(*kinds[kind]);
+    coordinates.include({.low = of_kind.low - placed.pivots[kind], .high = of_kind.high - placed.pivots[kind]});
+  }
   lift = 8.f * std::numeric_limits<float>::epsilon() * largestCoordinate(coordinates);
   low = box.low.z - 4.f * lift;
   high = box.high.z + 4.f * lift;
@@ -134,11 +138,12 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
     const TreeMesh& mesh = *kinds[kind];
     EmbreeScene& scene = made.emplace_back(rtcNewScene(device.get()));
     Prototype& prototype = prototypes.emplace_back();
-    attachTriangles(device.get(), scene.get(), kLeaves, mesh.vertices, mesh.leaf_triangles);
-    for (const glm::uvec3& t : mesh.leaf_triangles) prototype.planes.push_back(planeOf(mesh, t));
+    const glm::vec3& pivot = placed.pivots[kind];
+    attachTriangles(device.get(), scene.get(), kLeaves, mesh.vertices, mesh.leaf_triangles, pivot);
+    for (const glm::uvec3& t : mesh.leaf_triangles) prototype.planes.push_back(planeOf(mesh, t, pivot));
     if (with_wood && !mesh.wood_triangles.empty()) {
-      attachTriangles(device.get(), scene.get(), kWood, mesh.vertices, mesh.wood_triangles);
-      for (const glm::uvec3& t : mesh.wood_triangles) prototype.planes.push_back(planeOf(mesh, t));
+      attachTriangles(device.get(), scene.get(), kWood, mesh.vertices, mesh.wood_triangles, pivot);
+      for (const glm::uvec3& t : mesh.wood_triangles) prototype.planes.push_back(planeOf(mesh, t, pivot));
     }
     for (const std::uint32_t leaf : mesh.leaf_of_triangle)
       prototype.leaf_of_triangle.push_back(static_cast<std::uint32_t>(leaf_area.size()) + leaf);

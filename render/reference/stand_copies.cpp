@@ -1,6 +1,8 @@
 #include "render/reference/detail/stand_copies.hpp"
 
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
 #include <string>
 
 #include "core/require.hpp"
@@ -38,16 +40,28 @@ Copy rotation(const Placement& tree) {
           .sine = static_cast<float>(std::sin(double{tree.rotation}))};
 }
 
-// Box of the prototype rotated but not moved.
-Bounds rotatedBox(const TreeMesh& mesh, const Copy& copy, bool with_wood) {
+// Whole multiples of 64 m, far from a mesh's middle only: none for trees that grow where they are.
+glm::vec3 pivotOf(const TreeMesh& mesh) {
+  return 64.f * glm::round(bounds(mesh).centre() / 64.f);
+}
+
+// Box of the prototype about its pivot, rotated but not moved.
+Bounds rotatedBox(const TreeMesh& mesh, const glm::vec3& pivot, const Copy& copy, bool with_wood) {
   Bounds box;
   const auto add = [&](const std::vector<glm::uvec3>& triangles) {
     for (const glm::uvec3& t : triangles)
-      for (int corner = 0; corner < 3; ++corner) box.include(copy.rotated(mesh.vertices[t[corner]]));
+      for (int corner = 0; corner < 3; ++corner) box.include(copy.rotated(mesh.vertices[t[corner]] - pivot));
   };
   add(mesh.leaf_triangles);
   if (with_wood) add(mesh.wood_triangles);
   return box;
+}
+
+// Where a tree has its pivot, which turns with it about the mesh's origin [m].
+glm::dvec3 homeOf(const Placement& tree, const glm::dvec3& pivot) {
+  const double cosine = std::cos(double{tree.rotation}), sine = std::sin(double{tree.rotation});
+  const glm::dvec3 turned(cosine * pivot.x - sine * pivot.y, sine * pivot.x + cosine * pivot.y, pivot.z);
+  return glm::dvec3(tree.position) + turned;
 }
 
 // Whole periods by which a tree that spans low .. high is shifted to reach into cell_low .. cell_low + period.
@@ -64,38 +78,45 @@ Shifts shifts(float low, float high, float cell_low, float period) {
 
 StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood) {
   validate(kinds.size(), stand);
+  StandCopies result;
+  for (const TreeMesh* mesh : kinds) result.pivots.push_back(pivotOf(*mesh));
   std::vector<Copy> rotations;
-  std::vector<Bounds> boxes;  // of each tree, where it stands
-  Bounds whole;
+  std::vector<Bounds> boxes;  // of each tree about its home
+  std::vector<glm::dvec3> homes;
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
   for (const Placement& tree : stand.trees) {
     rotations.push_back(rotation(tree));
-    const Bounds box = rotatedBox(*kinds[tree.kind], rotations.back(), with_wood);
-    boxes.push_back({.low = box.low + tree.position, .high = box.high + tree.position});
-    whole.include(boxes.back());
+    boxes.push_back(rotatedBox(*kinds[tree.kind], result.pivots[tree.kind], rotations.back(), with_wood));
+    homes.push_back(homeOf(tree, result.pivots[tree.kind]));
+    low = glm::min(low, homes.back() + glm::dvec3(boxes.back().low));
+    high = glm::max(high, homes.back() + glm::dvec3(boxes.back().high));
   }
 
-  StandCopies result;
   // A single upright copy is traced as the mesh stands, without an instance: so its own origin is the best one.
   const bool single = stand.trees.size() == 1 && stand.trees[0].rotation == 0.f;
-  result.origin = single ? stand.trees[0].position : whole.centre();
-  result.box = whole;
+  result.origin = glm::vec3(single ? homes[0] : 0.5 * (low + high));
+  const auto fromOrigin = [&](const glm::dvec3& point) {
+    return single ? glm::vec3(0.f) : glm::vec3(point - glm::dvec3(result.origin));
+  };
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    result.box.include({.low = boxes[i].low + fromOrigin(homes[i]), .high = boxes[i].high + fromOrigin(homes[i])});
   if (stand.period)
     for (int axis = 0; axis < 2; ++axis) {
-      result.box.low[axis] = whole.centre()[axis] - 0.5f * (*stand.period)[axis];
+      result.box.low[axis] = result.box.centre()[axis] - 0.5f * (*stand.period)[axis];
       result.box.high[axis] = result.box.low[axis] + (*stand.period)[axis];
     }
 
   for (std::size_t i = 0; i < stand.trees.size(); ++i) {
     Copy copy = rotations[i];
-    const glm::vec3 home = stand.trees[i].position - result.origin;
+    const glm::vec3 home = fromOrigin(homes[i]);
     if (!stand.period) {
       copy.translation = home;
       result.copies.push_back(copy);
       continue;
     }
     const glm::vec2 period = *stand.period;
-    const Shifts x = shifts(boxes[i].low.x, boxes[i].high.x, result.box.low.x, period.x);
-    const Shifts y = shifts(boxes[i].low.y, boxes[i].high.y, result.box.low.y, period.y);
+    const Shifts x = shifts(home.x + boxes[i].low.x, home.x + boxes[i].high.x, result.box.low.x, period.x);
+    const Shifts y = shifts(home.y + boxes[i].low.y, home.y + boxes[i].high.y, result.box.low.y, period.y);
     const double count = static_cast<double>(result.copies.size()) + x.count() * y.count();
     require(count <= kMostCopies, "Stand.period: number of tree copies that reach into one period", count,
             "at most 1e6");

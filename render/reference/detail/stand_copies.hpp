@@ -23,11 +23,13 @@ struct Copy {
 };
 
 // The copies rays can meet, in coordinates whose origin lies at `origin` of the stand's: near the middle, so that
-// rounding does not depend on where in the world the stand stands.
+// rounding does not depend on where in the world the stand stands. Nor does it on where its meshes have their origins:
+// each prototype is taken about its pivot, a point near its middle from which its vertices differ without rounding.
 struct StandCopies {
-  glm::vec3 origin{0.f};  // [m]
-  std::vector<Copy> copies;
-  Bounds box;  // of all that can be hit, or of one period [m]
+  glm::vec3 origin{0.f};          // [m]
+  std::vector<glm::vec3> pivots;  // of each kind, in its mesh's coordinates [m]
+  std::vector<Copy> copies;       // of the prototypes about their pivots
+  Bounds box;                     // of all that can be hit, or of one period, about `origin` [m]
 };
 
 // The placements and, in a periodic stand, their copies shifted by whole periods as far as they reach into the period
