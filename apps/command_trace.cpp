@@ -12,10 +12,12 @@
 
 #include "apps/brf_options.hpp"
 #include "apps/brf_output.hpp"
+#include "apps/cell_output.hpp"
 #include "apps/commands.hpp"
 #include "apps/pictures.hpp"
 #include "apps/scene_options.hpp"
 #include "apps/slab_options.hpp"
+#include "apps/spectrum.hpp"
 #include "apps/terminal.hpp"
 #include "apps/trace_output.hpp"
 #include "apps/version.hpp"
@@ -49,7 +51,8 @@ struct TraceOptions {
   int band = 0;
   float exposure = kExposure;
   bool all_bands = false, without_wood = false, only_picture = false;
-  std::string leaves, picture;
+  std::string leaves, picture, cells, spectrum, spectrum_out;
+  double cell = 0.25;             // side [m]
   std::vector<float> other_leaf;  // reflectance, transmittance
   std::string checkpoint, target, time, part, compare;
   double write_every = 60.;  // [s]
@@ -117,42 +120,75 @@ class TraceRun {
         extent_(extentOf(options)),
         rays_(meshes(scene), scene.stand, !options.without_wood) {
     if (!options.other_leaf.empty()) traced_leaf_ = leafOfAll(scene, options);
-    for (int band = 0; band < kBands; ++band)
-      if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
+    if (!options.spectrum.empty()) {
+      Spectrum spectrum = readSpectrum(options.spectrum, scene, options.band);
+      bands_ = std::move(spectrum.bands);
+      names_ = std::move(spectrum.names);
+    } else {
+      for (int band = 0; band < kBands; ++band)
+        if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
+      if (options.all_bands) names_.assign(kBandNames.begin(), kBandNames.end());
+    }
     if (!options.checkpoint.empty())
       store_ = TraceStore(options.checkpoint, options.write_every, identityOf(scene, !options.without_wood));
   }
 
   void light() {
-    const auto paths = static_cast<std::uint64_t>(options_.paths.value_or(extent_.target > 0. ? kMostPaths : kPaths));
-    const std::uint64_t per_unit = unitSize(store_.identity("light"), "paths per unit", pathsPerUnit(paths));
-    const ForwardJob job(rays_, bands_, per_unit);
-    TraceSection& section = store_.section("light", job);
-    const std::uint64_t units = unitsOf(paths, per_unit);
-    section.asked = extent_.target == 0. ? units : 0;
-    const TraceGoal goal = extent_.target > 0.
-                               ? until(
-                                     extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
-                               : allOf(partOf(units, extent_.part, extent_.parts));
-    const Spent spent = work(goal, job, section, "tracing light");
-    if (section.sums.units() == 0) return;
-    if (extent_.target > 0.)
-      tellTarget(section.sums.units() >= kLeastUnits && job.relativeError(section.sums) <= extent_.target);
+    std::vector<ForwardResult> results;
+    std::vector<CellBand> cells;
+    std::optional<TraceCells> grid;
+    Spent spent;
+    double flux = 0.;
+    // As many bands as one path carries, then the others on paths of the same random numbers.
+    for (std::size_t first = 0; first < bands_.size() && !interrupted(); first += kMostBands) {
+      const std::vector<TraceLight> bands(
+          bands_.begin() + static_cast<std::ptrdiff_t>(first),
+          bands_.begin() + static_cast<std::ptrdiff_t>(std::min(bands_.size(), first + kMostBands)));
+      const std::string name = first == 0 ? "light" : fmt::format("light {}", 1 + first / kMostBands);
+      const auto paths = static_cast<std::uint64_t>(options_.paths.value_or(extent_.target > 0. ? kMostPaths : kPaths));
+      const std::uint64_t per_unit = unitSize(store_.identity(name), "paths per unit", pathsPerUnit(paths));
+      if (!options_.cells.empty()) grid.emplace(rays_, options_.cell, bands.size());
+      // A file may be asked for its leaves later.
+      const bool leaves = !options_.leaves.empty() || !options_.checkpoint.empty();
+      const ForwardJob job(rays_, bands, per_unit, {.leaves = leaves, .cells = grid});
+      TraceSection& section = store_.section(name, job);
+      const std::uint64_t units = unitsOf(paths, per_unit);
+      section.asked = extent_.target == 0. ? units : 0;
+      const TraceGoal goal = extent_.target > 0.
+                                 ? until(
+                                       extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
+                                 : allOf(partOf(units, extent_.part, extent_.parts));
+      spent.add(work(goal, job, section, "tracing light"));
+      if (section.sums.units() == 0) break;
+      if (extent_.target > 0.)
+        tellTarget(section.sums.units() >= kLeastUnits && job.relativeError(section.sums) <= extent_.target);
+      for (ForwardResult& result : job.results(section.sums)) results.push_back(std::move(result));
+      for (std::size_t band = 0; grid && band < bands.size(); ++band)
+        cells.push_back({names_.empty() ? "" : names_[first + band], job.cells(section.sums, band)});
+      flux = job.incidentFlux();
+    }
+    if (results.empty()) return;
 
-    const std::vector<ForwardResult> results = job.results(section.sums);
     const ForwardResult& first = results.front();
     if (!options_.leaves.empty()) writeLeaves(options_.leaves, scene_, first);
+    if (grid)
+      writeCells(options_.cells, *grid, cells, flux,
+                 {sourceOf(scene_), standHash(meshes(scene_), scene_.stand), versionText()});
+    if (!options_.spectrum_out.empty()) writeSpectrum(options_.spectrum_out, names_, results);
     figures_ = figuresOf(first);
     json_.update(jsonOf(first));
     json_["paths"] = first.paths;
     json_["seconds"] = spent.seconds;
     json_["cpu_seconds"] = spent.cpu_seconds;
-    if (options_.all_bands)
-      for (const ForwardResult& result : results) json_["bands"].push_back(jsonOf(result));
+    for (std::size_t band = 0; band < results.size() && !names_.empty(); ++band) {
+      nlohmann::ordered_json of_band{{"name", names_[band]}};
+      of_band.update(jsonOf(results[band]));
+      json_["bands"].push_back(of_band);
+    }
     if (!run_.json) {
       fmt::print("{}: share of the incident light\n", scene_.name);
       for (std::size_t band = 0; band < results.size(); ++band) {
-        if (options_.all_bands) fmt::print(" {}\n", kBandNames[band]);
+        if (!names_.empty()) fmt::print(" {}\n", names_[band]);
         fmt::print("{}", tableOf(results[band]));
       }
       printSpeed(first.paths, spent);
@@ -232,6 +268,13 @@ class TraceRun {
   struct Spent {
     std::uint64_t units = 0, units_before = 0;
     double seconds = 0., cpu_seconds = 0.;
+
+    void add(const Spent& more) {
+      units += more.units;
+      units_before += more.units_before;
+      seconds += more.seconds;
+      cpu_seconds += more.cpu_seconds;
+    }
   };
 
   Spent work(const TraceGoal& goal, const TraceJob& job, TraceSection& section, const std::string& label) {
@@ -320,6 +363,7 @@ class TraceRun {
   Extent extent_;
   RayScene rays_;
   std::vector<TraceLight> bands_;
+  std::vector<std::string> names_;  // of the bands; none where there is one that was not named
   TraceStore store_;
   std::vector<NamedEstimate> figures_;  // of the first band
   nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
@@ -342,6 +386,8 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (!options.brf.csv.empty()) requireNamed(options.brf.csv, ".csv");
   if (!options.brf.mes.empty()) requireNamed(options.brf.mes, ".mes");
   if (!options.leaves.empty()) requireNamed(options.leaves, ".csv");
+  if (!options.cells.empty()) requireCellFile(options.cells);
+  if (!options.spectrum_out.empty()) requireNamed(options.spectrum_out, ".csv");
   if (!options.picture.empty()) requirePictureName(options.picture);
   if (!options.checkpoint.empty()) requireNamed(options.checkpoint, ".trace");
   Scene scene = readScene(options.scene);
@@ -351,14 +397,14 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, views));
   TraceRun trace(options, run, scene);
   if (!options.only_picture && !options.brf.only) trace.light();
-  const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
+  const bool pictured = (scene.camera && options.spectrum.empty()) || !options.picture.empty() || options.only_picture;
   if (pictured && !options.brf.only && !interrupted()) trace.picture();
   if (!views.empty() && !interrupted()) trace.brf(views);
   if (!reference.empty()) trace.compare(std::move(reference));
 
   if (run.json) fmt::print("{}\n", trace.json().dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  for (const std::string& file :
-       {options.leaves, options.picture, options.brf.csv, options.brf.mes, options.checkpoint})
+  for (const std::string& file : {options.leaves, options.cells, options.spectrum_out, options.picture, options.brf.csv,
+                                  options.brf.mes, options.checkpoint})
     if (!file.empty() && !run.json && std::filesystem::exists(file)) fmt::print("wrote {}\n", file);
   if (!trace.failure().empty()) fmt::print(stderr, "sunfleck: {}\n", trace.failure());
   if (interrupted()) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
@@ -391,11 +437,32 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   CLI::Option* all_bands =
       command->add_flag("--all-bands", trace->all_bands, "Trace the three bands of the scene on the same paths")
           ->excludes("--band");
+  command
+      ->add_option(
+          "--cells", trace->cells,
+          "CSV or .vdb to write: light absorbed by leaves and by wood in each cell of the stand's box, or of one "
+          "period, and its standard error")
+      ->excludes("--only-picture");
+  command->add_option("--cell", trace->cell, "Side of these cells (default 0.25 m)")
+      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6] m"))
+      ->needs("--cells");
+  CLI::Option* spectrum =
+      command
+          ->add_option("--spectrum", trace->spectrum,
+                       "CSV of any number of bands, the optics of all trees in each: name,leaf_reflectance,"
+                       "leaf_transmittance[,wood_reflectance[,ground_albedo]]. No picture is traced")
+          ->excludes(all_bands)
+          ->excludes("--picture")
+          ->excludes("--only-picture");
+  command->add_option("--spectrum-out", trace->spectrum_out, "CSV to write: the shares of the light of each of them")
+      ->needs(spectrum);
   addBrfOptions(*command, trace->brf);
+  for (const char* other : {"--brf", "--brf-views", "--only-brf"}) spectrum->excludes(other);
   command
       ->add_option("--compare", trace->compare,
                    "CSV file name,value,standard_error of figures to compare with: names as in --json, brf:ZENITH of "
                    "--brf, brf:ZENITH:AZIMUTH of --brf-views, brf_albedo. Tells per cent, z and the score of RAMI-IV")
+      ->excludes(spectrum)
       ->excludes("--all-bands");
   command
       ->add_option("--other-leaf", trace->other_leaf,
@@ -403,6 +470,7 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
       ->expected(2)
       ->check(numberIn(0., 1., "in [0, 1]"))
       ->excludes(all_bands)
+      ->excludes(spectrum)
       ->excludes("--only-picture");
   command->add_option(
       "--checkpoint", trace->checkpoint,

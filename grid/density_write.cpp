@@ -16,6 +16,7 @@
 #include "grid/detail/density_cells.hpp"
 #include "grid/detail/vdb_layout.hpp"
 #include "grid/detail/vdb_seal.hpp"
+#include "grid/detail/vdb_write.hpp"
 
 namespace sunfleck {
 namespace fs = std::filesystem;
@@ -24,6 +25,8 @@ namespace {
 constexpr const char* kProjection =
     "leaves meet density G(s) lines along s per metre, G(s)^2 = (5 s.M s + 3 |M s|^2) / 8 with M the second moments of "
     "their normals, unit vectors n: exact for leaves of all directions alike and for parallel leaves";
+
+}  // namespace
 
 void writeVdb(const openvdb::GridCPtrVec& grids, const fs::path& file) {
   openvdb::io::File out(file.string());
@@ -43,8 +46,6 @@ void writeVdb(const openvdb::GridCPtrVec& grids, const fs::path& file) {
   patch.close();
   if (!patch) throw std::runtime_error(std::strerror(errno));
 }
-
-}  // namespace
 
 openvdb::GridCPtrVec describedGrids(const DensityGrid::Cells& cells, const GridSource& source) {
   openvdb::GridCPtrVec all;

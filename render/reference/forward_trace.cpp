@@ -19,7 +19,7 @@ namespace {
 
 // Where each number is kept among the bins of a run of B bands.
 struct Layout {
-  std::size_t bands, leaves;
+  std::size_t bands, leaves, cells;  // leaves, cells: as many as are kept
 
   enum Total { reflected, absorbed_leaves, absorbed_wood, absorbed_ground, arriving_ground };
   static constexpr std::size_t kTotals = 5;
@@ -39,11 +39,15 @@ struct Layout {
   }
   std::size_t leafBoth(std::size_t leaf) const { return leafSide(leaf, true) + 2 * bands; }
   std::size_t leafDirect(std::size_t leaf) const { return leafBoth(leaf) + bands; }
-  std::size_t bins() const { return leafSide(leaves, true); }
+  // Of each cell, what its leaves and what its wood absorb of each band.
+  std::size_t inCell(std::size_t cell, Total which) const {
+    return leafSide(leaves, true) + (2 * cell + (which == absorbed_leaves ? 0 : 1)) * bands;
+  }
+  std::size_t bins() const { return inCell(cells, absorbed_leaves); }
 
   // The bin of both sides of a leaf that the bin of one is part of; none if it is another.
   std::optional<std::size_t> bothOf(std::size_t bin) const {
-    if (bin < firstLeaf()) return {};
+    if (bin < firstLeaf() || bin >= leafSide(leaves, true)) return {};
     const std::size_t first = (bin - firstLeaf()) % ofLeaf();
     if (first >= 2 * bands) return {};
     return bin + (first < bands ? 2 : 1) * bands;
@@ -65,8 +69,15 @@ template <int N>
 class ForwardPaths {
  public:
   ForwardPaths(const RayScene::Geometry& scene, const SunlitFaces& faces, Direction sun, const SceneOptics<N>& optics,
-               const Layout& layout, double share, UnitTally& tally)
-      : scene_(scene), faces_(faces), sun_(sun), optics_(optics), layout_(layout), share_(share), tally_(tally) {}
+               const Layout& layout, const TraceCells* cells, double share, UnitTally& tally)
+      : scene_(scene),
+        faces_(faces),
+        sun_(sun),
+        optics_(optics),
+        layout_(layout),
+        cells_(cells),
+        share_(share),
+        tally_(tally) {}
 
   void trace(PathRandom& random) {
     const Pair start = random.pair();
@@ -81,13 +92,16 @@ class ForwardPaths {
       if (none && direction.z >= 0.f) return;
       if (none) meetGround(hit, from, direction);
       if (scatterings == 0) arriveDirect(hit);
-      if (hit.surface == Surface::leaf) addTo(layout_.leafSide(hit.leaf, hit.front), weight);
+      if (keepsLeaf(hit)) addTo(layout_.leafSide(hit.leaf, hit.front), weight);
       const BandLanes<N> arriving = weight;
       Onward onward = optics_.scatter(hit, weight, random);
       if (scatterings == kMostScatterings) onward.fate = Fate::absorbed;
       const Fate fate = onward.fate;
       if (fate == Fate::absorbed) weight = {};
-      keep(layout_.total(absorbedBy(hit.surface), 0), arriving, weight);
+      const typename Layout::Total absorber = absorbedBy(hit.surface);
+      keep(layout_.total(absorber, 0), arriving, weight);
+      if (cells_ && absorber != Layout::absorbed_ground)
+        keep(layout_.inCell(cells_->at(hit.position), absorber), arriving, weight);
       if (fate == Fate::absorbed) return;
       if (hit.surface == Surface::leaf) ++(fate == Fate::passed ? passes : reflections);
       from = scene_.leave(hit.position, onward.side);
@@ -109,8 +123,10 @@ class ForwardPaths {
 
   void arriveDirect(const Hit& hit) {
     if (hit.surface == Surface::none) tally_.add(layout_.direct(), share_);
-    if (hit.surface == Surface::leaf) tally_.add(layout_.leafDirect(hit.leaf), share_);
+    if (keepsLeaf(hit)) tally_.add(layout_.leafDirect(hit.leaf), share_);
   }
+
+  bool keepsLeaf(const Hit& hit) const { return hit.surface == Surface::leaf && layout_.leaves > 0; }
 
   // Subtracted in double precision, so that nothing gets lost in rounding.
   void keep(std::size_t first, const BandLanes<N>& arriving, const BandLanes<N>& leaving) {
@@ -137,37 +153,43 @@ class ForwardPaths {
   Direction sun_;
   const SceneOptics<N>& optics_;
   const Layout& layout_;
-  double share_;  // of the incident light that a path starts with
+  const TraceCells* cells_;  // none where they are not asked for
+  double share_;             // of the incident light that a path starts with
   UnitTally& tally_;
 };
 
 }  // namespace
 
 struct ForwardJob::Parts {
-  Parts(const RayScene& of, std::vector<TraceLight> of_bands, std::uint64_t per_unit)
+  Parts(const RayScene& of, std::vector<TraceLight> of_bands, std::uint64_t per_unit, ForwardDetail detail)
       : scene(of.geometry()),
         bands(std::move(of_bands)),
         paths_per_unit(per_unit),
         faces(scene, bands.front().sun),
         optics(bands, scene.prototypes.size()),
-        layout{.bands = bands.size(), .leaves = scene.leaf_area.size()} {}
+        cells(detail.cells),
+        layout{.bands = bands.size(),
+               .leaves = detail.leaves ? scene.leaf_area.size() : 0,
+               .cells = cells ? cells->count() : 0} {}
 
   const RayScene::Geometry& scene;
   std::vector<TraceLight> bands;
   std::uint64_t paths_per_unit;
   SunlitFaces faces;
   AnyLanes optics;
+  std::optional<TraceCells> cells;
   Layout layout;
 };
 
-ForwardJob::ForwardJob(const RayScene& scene, std::vector<TraceLight> bands, std::uint64_t paths_per_unit) {
+ForwardJob::ForwardJob(const RayScene& scene, std::vector<TraceLight> bands, std::uint64_t paths_per_unit,
+                       ForwardDetail detail) {
   requireFitting(bands, scene);
   require(paths_per_unit >= 1 && paths_per_unit <= kMostUnitPaths, "paths per unit", paths_per_unit,
           "from 1 to " + std::to_string(kMostUnitPaths));
   for (const TraceLight& light : bands)
     require(scene.geometry().period || light.ground_albedo == 0.f, "ground albedo", light.ground_albedo,
             "0 in a forward trace of a stand without period");
-  parts_ = std::make_unique<Parts>(scene, std::move(bands), paths_per_unit);
+  parts_ = std::make_unique<Parts>(scene, std::move(bands), paths_per_unit, std::move(detail));
 }
 
 ForwardJob::~ForwardJob() = default;
@@ -179,6 +201,7 @@ std::size_t ForwardJob::bins() const {
 TraceIdentity ForwardJob::identity() const {
   TraceIdentity identity = identityOf(parts_->bands);
   identity["paths per unit"] = std::to_string(parts_->paths_per_unit);
+  if (parts_->cells) identity["side of the cells"] = fmt::format("{}", parts_->cells->side());
   return identity;
 }
 
@@ -186,7 +209,7 @@ void ForwardJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally,
   const std::uint64_t count = parts_->paths_per_unit;
   parts_->optics.visit([&](const auto& optics) {
     ForwardPaths paths(parts_->scene, parts_->faces, parts_->bands.front().sun, optics, parts_->layout,
-                       1. / static_cast<double>(count), tally);
+                       parts_->cells ? &*parts_->cells : nullptr, 1. / static_cast<double>(count), tally);
     const EvenSet set(Stream::light, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
       PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));
@@ -229,6 +252,22 @@ std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
     r.paths = sums.units() * parts_->paths_per_unit;
   }
   return results;
+}
+
+std::vector<CellAbsorption> ForwardJob::cells(const TraceSums& sums, std::size_t band) const {
+  const Layout& layout = parts_->layout;
+  std::vector<CellAbsorption> met;
+  for (std::size_t cell = 0; cell < layout.cells; ++cell) {
+    const Estimate leaves = sums.estimate(layout.inCell(cell, Layout::absorbed_leaves) + band);
+    const Estimate wood = sums.estimate(layout.inCell(cell, Layout::absorbed_wood) + band);
+    // Below 0 by noise: where a path's weight is in other bands, it may leave with more of this one than it brought.
+    if (leaves.value != 0. || wood.value != 0.) met.push_back({cell, leaves, wood});
+  }
+  return met;
+}
+
+double ForwardJob::incidentFlux() const {
+  return parts_->faces.flux();
 }
 
 double ForwardJob::relativeError(const TraceSums& sums) const {

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/progress.hpp"
 #include "render/reference/order_table.hpp"
 #include "render/reference/ray_scene.hpp"
+#include "render/reference/trace_cells.hpp"
 #include "render/reference/trace_effort.hpp"
 #include "render/reference/trace_job.hpp"
 #include "render/reference/trace_light.hpp"
@@ -38,6 +40,18 @@ struct ForwardResult {
   double cpu_seconds = 0.;            // of all threads of the process
 };
 
+// Light of one band that leaves and wood of a cell absorb, as shares of the incident flux.
+struct CellAbsorption {
+  std::size_t cell = 0;
+  Estimate leaves, wood;
+};
+
+// What is kept beside the shares of the light.
+struct ForwardDetail {
+  bool leaves = true;                 // of each leaf: 32 bytes of memory for every sum, 4 sums for one band
+  std::optional<TraceCells> cells{};  // of the scene, what is absorbed in each
+};
+
 // (R1) Monte Carlo from the sun to the leaves, all bands on one path. Leaves scatter by Lambert's law on both sides,
 // wood and ground on one. The ground lies at the bottom of the box.
 class ForwardJob final : public TraceJob {
@@ -45,7 +59,8 @@ class ForwardJob final : public TraceJob {
   //   scene  must outlive the job
   // Throws InvalidInput on invalid light, more than kMostBands bands, and on a ground that reflects under a stand
   // without period: where that light would go cannot be told from the box alone (traceCamera takes any).
-  ForwardJob(const RayScene& scene, std::vector<TraceLight> bands, std::uint64_t paths_per_unit);
+  ForwardJob(const RayScene& scene, std::vector<TraceLight> bands, std::uint64_t paths_per_unit,
+             ForwardDetail detail = {});
   ~ForwardJob() override;
 
   std::size_t bins() const override;
@@ -53,6 +68,9 @@ class ForwardJob final : public TraceJob {
   void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const override;
 
   std::vector<ForwardResult> results(const TraceSums& sums) const;  // of each band
+  // Of those cells where any light was absorbed, in their order; their sums are those of the results.
+  std::vector<CellAbsorption> cells(const TraceSums& sums, std::size_t band) const;
+  double incidentFlux() const;  // for sun irradiance 1: what the shares are of [m^2]
   // The largest standard error of a share of the light, relative to it; shares below 1 % are left out.
   double relativeError(const TraceSums& sums) const;
 

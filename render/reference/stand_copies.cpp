@@ -1,9 +1,11 @@
 #include "render/reference/detail/stand_copies.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include "core/require.hpp"
 
@@ -45,15 +47,51 @@ glm::vec3 pivotOf(const TreeMesh& mesh) {
   return 64.f * glm::round(bounds(mesh).centre() / 64.f);
 }
 
-// Box of the prototype about its pivot, rotated but not moved.
-Bounds rotatedBox(const TreeMesh& mesh, const glm::vec3& pivot, const Copy& copy, bool with_wood) {
+// What the box of a prototype, turned about z in any way, follows from: the corners of the convex hull seen from above.
+struct Outline {
+  std::vector<glm::vec3> corners;  // about the pivot; z means nothing [m]
+  float low = 0.f, high = 0.f;     // z about the pivot [m]
+};
+
+// By A. M. Andrew's monotone chain (1979).
+Outline outlineOf(const TreeMesh& mesh, const glm::vec3& pivot, bool with_wood) {
+  std::vector<glm::vec3> points;
   Bounds box;
   const auto add = [&](const std::vector<glm::uvec3>& triangles) {
     for (const glm::uvec3& t : triangles)
-      for (int corner = 0; corner < 3; ++corner) box.include(copy.rotated(mesh.vertices[t[corner]] - pivot));
+      for (int corner = 0; corner < 3; ++corner) {
+        const glm::vec3 point = mesh.vertices[t[corner]] - pivot;
+        box.include(point);
+        points.push_back(point);
+      }
   };
   add(mesh.leaf_triangles);
   if (with_wood) add(mesh.wood_triangles);
+  std::ranges::sort(points,
+                    [](const glm::vec3& a, const glm::vec3& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+  const auto turnsLeft = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.;
+  };
+  Outline outline{.corners = {}, .low = box.low.z, .high = box.high.z};
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = outline.corners.size();
+    for (const glm::vec3& point : points) {
+      auto& corners = outline.corners;
+      while (corners.size() >= first + 2 && !turnsLeft(corners[corners.size() - 2], corners.back(), point))
+        corners.pop_back();
+      corners.push_back(point);
+    }
+    std::ranges::reverse(points);
+  }
+  return outline;
+}
+
+// Box of the prototype about its pivot, rotated but not moved.
+Bounds rotatedBox(const Outline& outline, const Copy& copy) {
+  Bounds box;
+  for (const glm::vec3& corner : outline.corners) box.include(copy.rotated(corner));
+  box.low.z = outline.low;
+  box.high.z = outline.high;
   return box;
 }
 
@@ -79,14 +117,18 @@ Shifts shifts(float low, float high, float cell_low, float period) {
 StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood) {
   validate(kinds.size(), stand);
   StandCopies result;
-  for (const TreeMesh* mesh : kinds) result.pivots.push_back(pivotOf(*mesh));
+  std::vector<Outline> outlines;  // of each kind
+  for (const TreeMesh* mesh : kinds) {
+    result.pivots.push_back(pivotOf(*mesh));
+    outlines.push_back(outlineOf(*mesh, result.pivots.back(), with_wood));
+  }
   std::vector<Copy> rotations;
   std::vector<Bounds> boxes;  // of each tree about its home
   std::vector<glm::dvec3> homes;
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
   for (const Placement& tree : stand.trees) {
     rotations.push_back(rotation(tree));
-    boxes.push_back(rotatedBox(*kinds[tree.kind], result.pivots[tree.kind], rotations.back(), with_wood));
+    boxes.push_back(rotatedBox(outlines[tree.kind], rotations.back()));
     homes.push_back(homeOf(tree, result.pivots[tree.kind]));
     low = glm::min(low, homes.back() + glm::dvec3(boxes.back().low));
     high = glm::max(high, homes.back() + glm::dvec3(boxes.back().high));
