@@ -17,8 +17,9 @@ inline constexpr double kLeastTurbidity = 1.7, kMostTurbidity = 10.;
 inline constexpr double kMostSunZenith = 1.5690509975429023;  // 89.9 degrees [rad]
 
 // (R17) The sky of Preetham, Shirley & Smits 1999, luminance and colour by the formula of Perez et al., and the sun's
-// light through the same air (their appendix, after Iqbal). The fits were made for turbidities of 2 to 6. What the
-// three bands cannot mix counts as 0 in the band that would be negative.
+// light through the same air (their appendix, after Iqbal). The fits were made for turbidities of 2 to 6: outside,
+// and under a sun lower than 75 degrees, sky and sun together are brighter than the light there is. What the three
+// bands cannot mix counts as 0 in the band that would be negative.
 //   sun_zenith   [rad], 0 .. kMostSunZenith
 //   sun_azimuth  where the sun stands [rad], in [-100, 100]
 //   turbidity    haze: optical thickness of the air with particles over that without [1], 1.7 .. 10: below, the fits

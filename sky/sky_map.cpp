@@ -27,7 +27,7 @@ SkyMap::SkyMap(int rows, int columns, float first_azimuth, std::vector<glm::vec3
     for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
       const glm::vec3& value = radiance_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + i];
       for (int band = 0; band < kBands; ++band)
-        require(value[band] >= 0.f && value[band] <= 1e9f, "radiance of the sky", value[band], "in [0, 1e9]");
+        require(value[band] >= 0.f && value[band] <= kMostRadiance, "radiance of the sky", value[band], "in [0, 1e6]");
       sum += value;
     }
     // The integral of cosine over a row, 2 pi (sin^2 b - sin^2 a) / 2 = pi sin(b - a) sin(b + a), per column.

@@ -15,13 +15,14 @@ namespace sunfleck {
 // sense from +x towards +y. Below the horizon there is no sky.
 class SkyMap {
  public:
-  //   radiance       of rows * columns cells, row by row, finite and >= 0 [1/sr]
+  //   radiance       of rows * columns cells, row by row, in [0, kMostRadiance] [1/sr]
   //   first_azimuth  where the first column begins [rad], in [-100, 100]
   // Throws InvalidInput on a number of rows or columns that is not in 1 .. kMostSide, another number of radiances or a
   // value out of its range.
   SkyMap(int rows, int columns, float first_azimuth, std::vector<glm::vec3> radiance);
 
   static constexpr int kMostSide = 16'384;
+  static constexpr float kMostRadiance = 1e6f;  // beyond, squares would overflow the sums of Monte Carlo
 
   int rows() const { return rows_; }
   int columns() const { return columns_; }

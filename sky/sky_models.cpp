@@ -30,8 +30,8 @@ std::array<std::size_t, kBands> channelsOf(const Image& image) {
 SkyMap withIrradiance(const SkyMap& sky, const glm::dvec3& irradiance) {
   glm::dvec3 factors(0.);
   for (int band = 0; band < kBands; ++band) {
-    require(irradiance[band] >= 0. && irradiance[band] <= 1e9, "irradiance of the sky", irradiance[band],
-            "in [0, 1e9]");
+    require(irradiance[band] >= 0. && irradiance[band] <= 1e6, "irradiance of the sky", irradiance[band],
+            "in [0, 1e6]");
     if (irradiance[band] == 0.) continue;
     require(sky.irradiance()[band] > 0., "irradiance that the sky's own radiance gives", sky.irradiance()[band],
             "above 0 in a band that is to have some");

@@ -53,6 +53,20 @@ double firstAzimuth(const SkyMap& sky, SkyMeasure measure) {
   return double{sky.firstAzimuth()} - (measure == SkyMeasure::through_y ? 0.5 * kPi : 0.);
 }
 
+// What the rows and the columns of a map measure; a cell measures the product.
+struct CellMeasures {
+  CellMeasures(const SkyMap& sky, SkyMeasure measure) {
+    const double row_step = 0.5 * kPi / sky.rows(), column_step = 2. * kPi / sky.columns();
+    const double first = firstAzimuth(sky, measure);
+    for (int row = 0; row < sky.rows(); ++row)
+      of_rows.push_back(zenithIntegral(measure, (row + 1) * row_step) - zenithIntegral(measure, row * row_step));
+    for (int i = 0; i < sky.columns(); ++i)
+      of_columns.push_back(azimuthIntegral(measure, first + (i + 1) * column_step) -
+                           azimuthIntegral(measure, first + i * column_step));
+  }
+  std::vector<double> of_rows, of_columns;
+};
+
 template <typename T>
 std::size_t intervalOf(const T* first, std::size_t count, T at) {
   const T* const above = std::upper_bound(first + 1, first + count, at);
@@ -61,18 +75,21 @@ std::size_t intervalOf(const T* first, std::size_t count, T at) {
 
 }  // namespace
 
+glm::dvec3 integral(const SkyMap& sky, SkyMeasure measure) {
+  const CellMeasures measures(sky, measure);
+  glm::dvec3 sum(0.);
+  std::size_t cell = 0;
+  for (const double of_row : measures.of_rows)
+    for (const double of_column : measures.of_columns) sum += of_row * of_column * glm::dvec3(sky.radiance(cell++));
+  return sum;
+}
+
 SkySampler::SkySampler(const SkyMap& sky, const glm::dvec3& weights, SkyMeasure measure)
     : sky_(&sky), measure_(measure) {
   const auto rows = static_cast<std::size_t>(sky.rows()), columns = static_cast<std::size_t>(sky.columns());
-  const double row_step = 0.5 * kPi / sky.rows(), column_step = 2. * kPi / sky.columns();
-  const double first = firstAzimuth(sky, measure);
-  for (std::size_t row = 0; row < rows; ++row)
-    row_measure_.push_back(zenithIntegral(measure, static_cast<double>(row + 1) * row_step) -
-                           zenithIntegral(measure, static_cast<double>(row) * row_step));
-  for (std::size_t i = 0; i < columns; ++i)
-    column_measure_.push_back(azimuthIntegral(measure, first + static_cast<double>(i + 1) * column_step) -
-                              azimuthIntegral(measure, first + static_cast<double>(i) * column_step));
-
+  CellMeasures measures(sky, measure);
+  row_measure_ = std::move(measures.of_rows);
+  column_measure_ = std::move(measures.of_columns);
   rows_.assign(rows + 1, 0.);
   columns_.assign(rows * (columns + 1), 0.f);
   std::vector<double> cumulative(columns + 1);

@@ -11,6 +11,9 @@ namespace sunfleck {
 // What a solid angle counts for: itself, or the light that goes from it through a plane across an axis, |to_sky[axis]|.
 enum class SkyMeasure { solid_angle, through_x, through_y, through_z };
 
+// Per band, the integral of the sky's radiance over a measure; through a plane, from both of its sides [1].
+glm::dvec3 integral(const SkyMap& sky, SkyMeasure measure);
+
 // A direction drawn from the sky.
 struct SkySample {
   glm::vec3 to_sky{0.f};  // unit, z > 0
