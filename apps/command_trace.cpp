@@ -117,8 +117,7 @@ class TraceRun {
         extent_(extentOf(options)),
         rays_(meshes(scene), scene.stand, !options.without_wood) {
     if (!options.other_leaf.empty()) traced_leaf_ = leafOfAll(scene, options);
-    for (int band = 0; band < kBands; ++band)
-      if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
+    bands_ = traceLights(scene, options.all_bands ? std::vector{0, 1, 2} : std::vector{options.band});
     if (!options.checkpoint.empty())
       store_ = TraceStore(options.checkpoint, options.write_every, identityOf(scene, !options.without_wood));
   }
@@ -207,10 +206,13 @@ class TraceRun {
       for (const BrfResult& result : results)
         json_["brf_bands"].push_back({{"brf", jsonOf(views, result)}, {"albedo", jsonOf(result.albedo, "albedo")}});
     if (run_.json) return;
-    fmt::print("reflectance factors, sun at {:.6g} degrees\n", double{scene_.sun_zenith} * 180. / std::numbers::pi);
+    const bool one_direction = scene_.sky.kind == SceneSky::Kind::none && scene_.sun_diameter == 0.f;
+    fmt::print("{}, sun at {:.6g} degrees\n",
+               one_direction ? "reflectance factors" : "hemispherical-directional reflectance factors (HDRF)",
+               double{scene_.sun_zenith} * 180. / std::numbers::pi);
     for (std::size_t band = 0; band < results.size(); ++band) {
       if (options_.all_bands) fmt::print(" {}\n", kBandNames[band]);
-      fmt::print("{}", tableOf(views, results[band]));
+      fmt::print("{}", tableOf(views, results[band], one_direction ? "BRF" : "HDRF"));
     }
     printSpeed(first.paths, spent);
   }
@@ -346,6 +348,8 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   const std::vector<BrfView> views = brfViews(options.brf, scene);
+  if (!options.brf.mes.empty() && (scene.sky.kind != SceneSky::Kind::none || scene.sun_diameter > 0.f))
+    throw InvalidInput("--mes: must be for light from one direction, without [sky] and sun.diameter_deg");
   std::vector<NamedEstimate> reference;
   if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, views));
   TraceRun trace(options, run, scene);
