@@ -14,7 +14,7 @@ struct ClearSky {
 };
 
 inline constexpr double kLeastTurbidity = 1.7, kMostTurbidity = 10.;
-inline constexpr double kMostSunZenith = 1.5690509975429023;  // 89.9 degrees [rad]
+inline constexpr double kMostSunZenith = 1.5690511;  // 89.9 degrees [rad], also when rounded to a float
 
 // (R17) The sky of Preetham, Shirley & Smits 1999, luminance and colour by the formula of Perez et al., and the sun's
 // light through the same air (their appendix, after Iqbal). The fits were made for turbidities of 2 to 6: outside,
