@@ -1,6 +1,7 @@
 // Check that light of skies and of the sun's disc gives what closed forms say, that paths of light and paths from the
-// eye agree under each of them, and that lights add up. Monte Carlo means are held to five standard errors, a false
-// alarm of 6e-7 for each of the 150 or so; where a sum is exact, to rounding in single precision.
+// eye agree under each of them, and that lights add up. Monte Carlo means are held to 5.3 standard errors, a false alarm
+// of 1.2e-7 for each of the 400 or so, more than half of them per leaf; where a sum is exact, to rounding in single
+// precision.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -53,7 +54,7 @@ Sky patches() {
 }
 
 testing::AssertionResult agrees(const Estimate& found, double expected, double noise = 0.) {
-  const double allowed = 5. * std::hypot(found.standard_error, noise) + kRounding * std::abs(expected);
+  const double allowed = 5.3 * std::hypot(found.standard_error, noise) + kRounding * std::abs(expected);
   if (std::abs(found.value - expected) <= allowed) return testing::AssertionSuccess();
   return testing::AssertionFailure() << found.value << " against " << expected << ", allowed " << allowed;
 }
@@ -145,13 +146,13 @@ TEST(R18_TraceSky, FurnaceOfWhiteLeavesShowsRadianceOne) {
                          .sky = uniform(kPi)};
   const float low = of.scene.box().low.z;
   for (const float zenith : {30.f, 80.f, 120.f}) {  // the last looks up: leaves from below, and the sky
-    const CameraResult seen =
-        traceCamera(of.scene, light, picture(sunlight(zenith * static_cast<float>(kDegree), 2.f), 1.f, 32), low, {.paths = 40'000});
+    const CameraResult seen = traceCamera(
+        of.scene, light, picture(sunlight(zenith * static_cast<float>(kDegree), 2.f), 1.f, 32), low, {.paths = 16'384});
     EXPECT_TRUE(agrees(seen.mean, 1.)) << zenith;
     EXPECT_LT(seen.mean.standard_error, 0.02);
   }
   const CameraResult alone = traceCamera(RayScene(of.mesh, Stand{}, true), light, picture(sunlight(1.f, 2.f), 1.f, 32),
-                                         low, {.paths = 40'000});
+                                         low, {.paths = 16'384});
   EXPECT_TRUE(agrees(alone.mean, 1.));
   const BrfResult factors = brf(of.scene, {light}, {{0.3, 1.}, {1.2, 4.}}, 20'000).front();
   for (const ReflectanceParts& view : {factors.views[0], factors.views[1], factors.albedo})
@@ -248,11 +249,11 @@ TEST(R18_TraceSky, EyeSeesTheDiscItself) {
 TEST(R19_TraceSky, SmallDiscIsThePointInTheLimit) {
   const SceneOfLeaves of;
   TraceLight light{.sun = sunlight(0.7f, 1.f), .ground_albedo = 0.3f};
-  const ForwardResult point = traceForward(of.scene, light, {.paths = 100'000, .seed = 1});
-  const BrfResult seen_point = brf(of.scene, {light}, {{0.4, 2.}}, 30'000, 3).front();
+  const ForwardResult point = traceForward(of.scene, light, {.paths = 50'000, .seed = 1});
+  const BrfResult seen_point = brf(of.scene, {light}, {{0.4, 2.}}, 15'000, 3).front();
   light.sun_diameter = kLeastSunDiameter;
-  const ForwardResult disc = traceForward(of.scene, light, {.paths = 100'000, .seed = 2});
-  const BrfResult seen_disc = brf(of.scene, {light}, {{0.4, 2.}}, 30'000, 4).front();
+  const ForwardResult disc = traceForward(of.scene, light, {.paths = 50'000, .seed = 2});
+  const BrfResult seen_disc = brf(of.scene, {light}, {{0.4, 2.}}, 15'000, 4).front();
   EXPECT_TRUE(agrees(disc.reflected, point.reflected.value, std::hypot(point.reflected.standard_error, 2e-4)));
   EXPECT_TRUE(agrees(disc.arriving_ground_direct, point.arriving_ground_direct.value,
                      std::hypot(point.arriving_ground_direct.standard_error, 2e-4)));
@@ -273,21 +274,21 @@ TEST(R18_TraceSky, EyeAndLightAgreeUnderEverySky) {
                         Case{clear(0.7), {1.f, 0.9f, 0.8f}, static_cast<float>(0.533 * kDegree)},
                         Case{patches(), {0.f, 0.2f, 0.f}, 0.3f}}) {
     const std::vector<TraceLight> bands = threeBands(c.sky, c.sun, c.diameter);
-    const std::vector<BrfResult> seen = brf(of.scene, bands, {{0.3, 0.}}, 40'000);
-    const std::vector<ForwardResult> sent = traceForwardBands(of.scene, bands, {.paths = 60'000, .seed = 2});
+    const std::vector<BrfResult> seen = brf(of.scene, bands, {{0.3, 0.}}, 15'000);
+    const std::vector<ForwardResult> sent = traceForwardBands(of.scene, bands, {.paths = 25'000, .seed = 2});
     for (std::size_t band = 0; band < bands.size(); ++band) {
       EXPECT_TRUE(agree(seen[band].albedo.whole, sent[band].reflected)) << band;
       EXPECT_TRUE(agree(seen[band].albedo.ground_once, sent[band].reflected_by_order.ofOrder(0))) << band;
-      EXPECT_LT(seen[band].albedo.whole.standard_error, 0.03 * seen[band].albedo.whole.value);
+      EXPECT_LT(seen[band].albedo.whole.standard_error, 0.05 * seen[band].albedo.whole.value);
       const double sum =
           sent[band].reflected.value + sent[band].absorbed_leaves.value + sent[band].absorbed_ground.value;
-      EXPECT_NEAR(sum, 1., 0.05);  // see forward_trace.hpp; five times 3 / sqrt(60,000)
+      EXPECT_NEAR(sum, 1., 0.05);  // see forward_trace.hpp; weights below 3: five times 1.5 / sqrt(25,000)
       const double level = double{c.sun[static_cast<int>(band)]} * std::cos(0.7),
                    sky = c.sky->irradiance()[static_cast<int>(band)];
       EXPECT_NEAR(sent[band].sky_share, sky / (level + sky), 1e-6);
     }
     // Alone, on paths of its own, a band finds the same, and no light is made or lost.
-    const ForwardResult alone = traceForward(of.scene, bands[2], {.paths = 60'000, .seed = 5});
+    const ForwardResult alone = traceForward(of.scene, bands[2], {.paths = 25'000, .seed = 5});
     EXPECT_TRUE(agree(alone.reflected, sent[2].reflected));
     EXPECT_TRUE(agree(alone.arriving_ground_direct, sent[2].arriving_ground_direct));
     EXPECT_NEAR(alone.reflected.value + alone.absorbed_leaves.value + alone.absorbed_ground.value, 1., 1e-12);
@@ -302,21 +303,22 @@ TEST(R19_TraceSky, LightsAddUp) {
   sky.sun_irradiance = 0.f;
   sky.sky = both.sky = clear(0.7);
   const auto forward = [&](const TraceLight& light, std::uint64_t seed) {
-    return traceForward(of.scene, light, {.paths = 60'000, .seed = seed});
+    return traceForward(of.scene, light, {.paths = 30'000, .seed = seed});
   };
   const ForwardResult f_sun = forward(sun, 1), f_sky = forward(sky, 2), f_both = forward(both, 3);
-  const auto total = [](const std::vector<Estimate>& of_leaves) {
-    Estimate sum;
-    for (const Estimate& leaf : of_leaves) sum = plus(sum, leaf);
-    sum.standard_error *= 2.;  // leaves of one path vary together
-    return sum;
-  };
-  EXPECT_TRUE(agree(total(f_both.leaf_front), plus(total(f_sun.leaf_front), total(f_sky.leaf_front))));
-  EXPECT_TRUE(agree(total(f_both.leaf_direct), plus(total(f_sun.leaf_direct), total(f_sky.leaf_direct))));
+  const double of_sun = 0.8 * std::cos(0.7), of_sky = both.sky->irradiance().x;  // of a horizontal plane
+  const auto sum = [&](const auto& figure) { return plus(times(of_sun, figure(f_sun)), times(of_sky, figure(f_sky))); };
+  const auto absorbed = [](const ForwardResult& r) { return r.absorbed_leaves; };
+  const auto direct = [](const ForwardResult& r) { return r.arriving_ground_direct; };
+  EXPECT_TRUE(agree(times(of_sun + of_sky, absorbed(f_both)), sum(absorbed)));
+  EXPECT_TRUE(agree(times(of_sun + of_sky, direct(f_both)), sum(direct)));
+  for (std::size_t leaf = 0; leaf < f_both.leaf_front.size(); ++leaf) {
+    EXPECT_TRUE(agree(f_both.leaf_front[leaf], plus(f_sun.leaf_front[leaf], f_sky.leaf_front[leaf]))) << leaf;
+    EXPECT_TRUE(agree(f_both.leaf_direct[leaf], plus(f_sun.leaf_direct[leaf], f_sky.leaf_direct[leaf]))) << leaf;
+  }
   const auto albedo = [&](const TraceLight& light, std::uint64_t seed) {
-    return brf(of.scene, {light}, {{0.3, 0.}}, 40'000, seed).front().albedo.whole;
+    return brf(of.scene, {light}, {{0.3, 0.}}, 15'000, seed).front().albedo.whole;
   };
-  const double of_sun = 0.8 * std::cos(0.7), of_sky = both.sky->irradiance().x;
   EXPECT_TRUE(agree(times(of_sun + of_sky, albedo(both, 1)),
                     plus(times(of_sun, albedo(sun, 2)), times(of_sky, albedo(sky, 3)))));
 }

@@ -24,8 +24,8 @@ struct PixelRays {
 
 // Of one band.
 struct CameraResult {
-  Image radiance;  // channels "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr], and "single.Y":
-                   // what of it was scattered once
+  Image radiance;  // channels "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr], the sky's itself
+                   // where nothing is met, and "single.Y": what of it was scattered once
   Image standard_error;  // channel "Y": of the radiance of each pixel
   Estimate mean;         // of all pixels
   std::uint64_t paths = 0;
