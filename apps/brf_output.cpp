@@ -43,12 +43,12 @@ Json jsonOf(const std::vector<BrfView>& views, const BrfResult& result) {
   return rows;
 }
 
-std::string tableOf(const std::vector<BrfView>& views, const BrfResult& result) {
-  std::string text = fmt::format("  {:>8} {:>8}  {:^22} {:>9} {:>9} {:>9} {:>9}\n", "zenith", "azimuth", "BRF",
+std::string tableOf(const std::vector<BrfView>& views, const BrfResult& result, const char* name) {
+  std::string text = fmt::format("  {:>8} {:>8}  {:^22} {:>9} {:>9} {:>9} {:>9}\n", "zenith", "azimuth", name,
                                  "leaf once", "wood once", "ground", "more");
   const auto add = [&](const ReflectanceParts& parts) {
     text += fmt::format("{:.6f} +- {:.6f}  ", parts.whole.value, parts.whole.standard_error);
-    for (const auto& [name, part] : partsOf(parts)) text += fmt::format(" {:>9.6f}", part.value);
+    for (const auto& [of_what, part] : partsOf(parts)) text += fmt::format(" {:>9.6f}", part.value);
     text += '\n';
   };
   for (std::size_t i = 0; i < views.size(); ++i) {

@@ -13,7 +13,7 @@ namespace sunfleck::apps {
 nlohmann::ordered_json jsonOf(const std::vector<BrfView>& views, const BrfResult& result);
 nlohmann::ordered_json jsonOf(const ReflectanceParts& parts, const char* name);
 // The same as a table for people.
-std::string tableOf(const std::vector<BrfView>& views, const BrfResult& result);
+std::string tableOf(const std::vector<BrfView>& views, const BrfResult& result, const char* name);
 
 // CSV of all of it. Several bands are told apart by their names in a first column.
 void writeBrf(const std::string& file, const std::vector<BrfView>& views, const std::vector<BrfResult>& results,

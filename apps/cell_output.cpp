@@ -11,7 +11,7 @@
 namespace sunfleck::apps {
 namespace {
 
-std::string csvOf(const TraceCells& cells, std::span<const CellBand> bands, double flux) {
+std::string csvOf(const TraceCells& cells, std::span<const CellBand> bands) {
   std::string text = "x_m,y_m,z_m,volume_m3";
   std::map<std::size_t, std::vector<const CellAbsorption*>> rows;  // of each cell, by band
   for (std::size_t band = 0; band < bands.size(); ++band) {
@@ -30,15 +30,18 @@ std::string csvOf(const TraceCells& cells, std::span<const CellBand> bands, doub
     const glm::dvec3 middle = cells.corner() + cells.side() * glm::dvec3(cells.place(cell)) + 0.5 * size;
     const double volume = size.x * size.y * size.z;
     text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", middle.x, middle.y, middle.z, volume);
-    for (const CellAbsorption* of : row)
+    for (std::size_t band = 0; band < row.size(); ++band) {
+      const CellAbsorption* of = row[band];
+      const double per_volume = bands[band].incident_flux / volume;
       for (const Estimate& part : {of ? of->leaves : Estimate(), of ? of->wood : Estimate()})
-        text += fmt::format(",{:.9g},{:.4g},{:.9g}", part.value, part.standard_error, part.value * flux / volume);
+        text += fmt::format(",{:.9g},{:.4g},{:.9g}", part.value, part.standard_error, part.value * per_volume);
+    }
     text += '\n';
   }
   return text;
 }
 
-std::vector<CellValues> gridsOf(const TraceCells& cells, std::span<const CellBand> bands, double flux) {
+std::vector<CellValues> gridsOf(const TraceCells& cells, std::span<const CellBand> bands) {
   std::vector<CellValues> grids;
   for (const CellBand& band : bands)
     for (const auto& [what, part] : {std::pair{"leaves", &CellAbsorption::leaves}, {"wood", &CellAbsorption::wood}}) {
@@ -51,7 +54,7 @@ std::vector<CellValues> gridsOf(const TraceCells& cells, std::span<const CellBan
         const Estimate& share = cell.*part;
         if (share.value == 0.) continue;
         const glm::dvec3 size = cells.size(cell.cell);
-        const double per_volume = flux / (size.x * size.y * size.z);
+        const double per_volume = band.incident_flux / (size.x * size.y * size.z);
         for (CellValues* of : {&values, &errors}) of->cells.emplace_back(cells.place(cell.cell));
         values.values.push_back(static_cast<float>(per_volume * share.value));
         errors.values.push_back(static_cast<float>(per_volume * share.standard_error));
@@ -72,11 +75,11 @@ void requireCellFile(const std::filesystem::path& file) {
 }
 
 void writeCells(const std::filesystem::path& file, const TraceCells& cells, std::span<const CellBand> bands,
-                double flux, const GridSource& source) {
+                const GridSource& source) {
   if (file.extension() == ".csv")
-    writeWhole(file, csvOf(cells, bands, flux));
+    writeWhole(file, csvOf(cells, bands));
   else
-    writeCellValues(file, gridsOf(cells, bands, flux), cells.corner(), cells.side(), source);
+    writeCellValues(file, gridsOf(cells, bands), cells.corner(), cells.side(), source);
 }
 
 }  // namespace sunfleck::apps

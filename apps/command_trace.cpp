@@ -125,8 +125,7 @@ class TraceRun {
       bands_ = std::move(spectrum.bands);
       names_ = std::move(spectrum.names);
     } else {
-      for (int band = 0; band < kBands; ++band)
-        if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
+      bands_ = traceLights(scene, options.all_bands ? std::vector{0, 1, 2} : std::vector{options.band});
       if (options.all_bands) names_.assign(kBandNames.begin(), kBandNames.end());
     }
     if (!options.checkpoint.empty())
@@ -138,7 +137,6 @@ class TraceRun {
     std::vector<CellBand> cells;
     std::optional<TraceCells> grid;
     Spent spent;
-    double flux = 0.;
     // As many bands as one path carries, then the others on paths of the same random numbers.
     for (std::size_t first = 0; first < bands_.size() && !interrupted(); first += kMostBands) {
       const std::vector<TraceLight> bands(
@@ -164,15 +162,15 @@ class TraceRun {
         tellTarget(section.sums.units() >= kLeastUnits && job.relativeError(section.sums) <= extent_.target);
       for (ForwardResult& result : job.results(section.sums)) results.push_back(std::move(result));
       for (std::size_t band = 0; grid && band < bands.size(); ++band)
-        cells.push_back({names_.empty() ? "" : names_[first + band], job.cells(section.sums, band)});
-      flux = job.incidentFlux();
+        cells.push_back({names_.empty() ? "" : names_[first + band], job.cells(section.sums, band),
+                         job.incidentFlux(static_cast<int>(band))});
     }
     if (results.empty()) return;
 
     const ForwardResult& first = results.front();
     if (!options_.leaves.empty()) writeLeaves(options_.leaves, scene_, first);
     if (grid)
-      writeCells(options_.cells, *grid, cells, flux,
+      writeCells(options_.cells, *grid, cells,
                  {sourceOf(scene_), standHash(meshes(scene_), scene_.stand), versionText()});
     if (!options_.spectrum_out.empty()) writeSpectrum(options_.spectrum_out, names_, results);
     figures_ = figuresOf(first);
@@ -244,10 +242,13 @@ class TraceRun {
       for (const BrfResult& result : results)
         json_["brf_bands"].push_back({{"brf", jsonOf(views, result)}, {"albedo", jsonOf(result.albedo, "albedo")}});
     if (run_.json) return;
-    fmt::print("reflectance factors, sun at {:.6g} degrees\n", double{scene_.sun_zenith} * 180. / std::numbers::pi);
+    const bool one_direction = scene_.sky.kind == SceneSky::Kind::none && scene_.sun_diameter == 0.f;
+    fmt::print("{}, sun at {:.6g} degrees\n",
+               one_direction ? "reflectance factors" : "hemispherical-directional reflectance factors (HDRF)",
+               double{scene_.sun_zenith} * 180. / std::numbers::pi);
     for (std::size_t band = 0; band < results.size(); ++band) {
       if (options_.all_bands) fmt::print(" {}\n", kBandNames[band]);
-      fmt::print("{}", tableOf(views, results[band]));
+      fmt::print("{}", tableOf(views, results[band], one_direction ? "BRF" : "HDRF"));
     }
     printSpeed(first.paths, spent);
   }
@@ -393,6 +394,8 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   const std::vector<BrfView> views = brfViews(options.brf, scene);
+  if (!options.brf.mes.empty() && (scene.sky.kind != SceneSky::Kind::none || scene.sun_diameter > 0.f))
+    throw InvalidInput("--mes: must be for light from one direction, without [sky] and sun.diameter_deg");
   std::vector<NamedEstimate> reference;
   if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, views));
   TraceRun trace(options, run, scene);

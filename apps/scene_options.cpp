@@ -72,6 +72,9 @@ Scene readScene(const SceneOptions& options) {
     if (kind.dropped.leaf_triangles > 0)
       fmt::print(stderr, "sunfleck: {}: left out {} leaf triangles of no area{}\n", options.scene,
                  kind.dropped.leaf_triangles, scene.kinds.size() > 1 ? fmt::format(" of \"{}\"", kind.name) : "");
+  if (scene.sky.negative_values > 0)
+    fmt::print(stderr, "sunfleck: {}: took {} negative values of the sky for 0\n", scene.sky.file,
+               scene.sky.negative_values);
   if (options.albedo)
     for (TreeKind& kind : scene.kinds)
       kind.leaf.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});

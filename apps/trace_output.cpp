@@ -58,6 +58,7 @@ Json jsonOf(const ForwardResult& result) {
     json[row.name] = row.estimate.value;
     json["standard_errors"][row.name] = row.estimate.standard_error;
   }
+  json["sky_share"] = result.sky_share;
   json["orders"] = {{"reflected", jsonOf(result.reflected_by_order)},
                     {"arriving_ground", jsonOf(result.arriving_ground_by_order)}};
   return json;
@@ -67,6 +68,7 @@ std::string tableOf(const ForwardResult& result) {
   std::string text;
   for (const Row& row : rowsOf(result))
     text += fmt::format("  {:<26} {:.6f} +- {:.6f}\n", row.meaning, row.estimate.value, row.estimate.standard_error);
+  if (result.sky_share > 0.) text += fmt::format("  {:<26} {:.6f}\n", "of the light, the sky's", result.sky_share);
   const auto orders = [&](const char* meaning, const OrderTable& table) {
     const Estimate none = table.ofOrder(0), once = table.ofOrder(1);
     double more = table.beyond().value;

@@ -61,7 +61,33 @@ void writeExr(const fs::path& named, const fs::path& file, const Image& image) {
     throw InvalidInput(named.string() + ": cannot be written: " + reason(out.get()));
 }
 
+constexpr int kMostWidth = 8192, kMostHeight = 4096;  // of a picture that is read
+
 }  // namespace
+
+Image readImage(const fs::path& file) {
+  const std::string extension = lowered(file.extension().string());
+  if (extension != ".exr" && extension != ".hdr")
+    throw InvalidInput(file.string() + ": has the extension \"" + file.extension().string() +
+                       "\": a picture of radiances must be .exr or .hdr");
+  if (!fs::is_regular_file(file)) throw InvalidInput(file.string() + ": must be a file that can be read");
+  const auto refuse = [&](std::string why) {
+    why.resize(std::min(why.find('\n'), why.size()));
+    throw InvalidInput(file.string() + ": cannot be read: " + (why.empty() ? "OpenImageIO gives no reason" : why));
+  };
+  const auto in = OIIO::ImageInput::open(file.string());
+  if (!in) refuse(OIIO::geterror());
+  const OIIO::ImageSpec& spec = in->spec();
+  if (spec.width < 1 || spec.width > kMostWidth || spec.height < 1 || spec.height > kMostHeight || spec.depth != 1 ||
+      spec.nchannels < 1 || spec.nchannels > 64)
+    throw InvalidInput(file.string() + ": has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                       " pixels of " + std::to_string(spec.nchannels) + " channels: must be at most " +
+                       std::to_string(kMostWidth) + " x " + std::to_string(kMostHeight) + " of 64");
+  Image image{.width = spec.width, .height = spec.height, .channels = spec.channelnames, .values = {}};
+  image.values.resize(image.at(0, image.height, 0));
+  if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data())) refuse(in->geterror());
+  return image;
+}
 
 void requirePictureName(const fs::path& file) {
   const std::string extension = lowered(file.extension().string());

@@ -15,6 +15,9 @@ void writeImage(const std::filesystem::path& file, const Image& image, float exp
 // Throws InvalidInput unless a picture could be written at `file`: to be asked before long work.
 void requirePictureName(const std::filesystem::path& file);
 
+// Reads linear radiances: an .exr or .hdr picture of at most 8192 x 4096 pixels. Throws InvalidInput on anything else.
+Image readImage(const std::filesystem::path& file);
+
 // The same PNG as bytes, for embedding in a report.
 std::string pngBytes(const Image& image, float exposure);
 

@@ -12,6 +12,7 @@
 #include "core/leaf_optics.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
+#include "render/scene_sky.hpp"
 
 namespace sunfleck {
 
@@ -37,15 +38,18 @@ struct TreeKind {
   glm::vec3 wood_reflectance{0.3f};  // Lambertian, per band [1], 0 .. 1
 };
 
-// What is simulated: kinds of trees, where they stand, the ground and the sun.
+// What is simulated: kinds of trees, where they stand, the ground, the sun and the sky.
 struct Scene {
   std::string name;
   std::string origin;                       // the file or the name it was read from, with which messages begin
   std::vector<TreeKind> kinds{TreeKind{}};  // at least one; of each stands a tree
   Stand stand;
-  glm::vec3 ground_albedo{0.f};  // Lambertian, per band [1], 0 .. 1
-  float sun_zenith = 0.f;        // [rad], 0 .. below pi/2
-  float sun_azimuth = 0.f;       // where the sun stands, from +x towards +y [rad]
+  glm::vec3 ground_albedo{0.f};   // Lambertian, per band [1], 0 .. 1
+  float sun_zenith = 0.f;         // [rad], 0 .. below pi/2
+  float sun_azimuth = 0.f;        // where the sun stands, from +x towards +y [rad]
+  glm::vec3 sun_irradiance{1.f};  // of a plane that faces the sun, per band [1], 0 .. 10
+  float sun_diameter = 0.f;       // of its disc, 0: a point [rad]
+  SceneSky sky;
   std::optional<Camera> camera;  // none: one that shows the whole stand
 
   Direction sun() const { return sunlight(sun_zenith, sun_azimuth); }

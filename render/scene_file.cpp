@@ -7,6 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <string_view>
 
 #include "core/require.hpp"
@@ -14,6 +15,9 @@
 #include "plants/species.hpp"
 #include "plants/weber_penn.hpp"
 #include "render/detail/scene_table.hpp"
+#include "render/image_file.hpp"
+#include "sky/preetham.hpp"
+#include "sky/sky_models.hpp"
 
 namespace sunfleck {
 namespace {
@@ -163,9 +167,57 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
   scene.camera = read;
 }
 
+void readSun(Scene& scene, detail::SceneTable sun) {
+  constexpr double kLeastDiameter = 0.25, kMostDiameter = 60.;  // as Monte Carlo takes it
+  scene.sun_zenith = degrees(sun, "zenith_deg", 0., 89.9, "in [0, 89.9]");
+  scene.sun_azimuth = degrees(sun, "azimuth_deg", -360., 360., "in [-360, 360]");
+  scene.sun_irradiance = sun.perBand("irradiance", scene.sun_irradiance, 10.);
+  const double diameter = sun.number("diameter_deg", 0., 0., kMostDiameter, "0 or in [0.25, 60]");
+  require(diameter == 0. || diameter >= kLeastDiameter, scene.origin + ": sun.diameter_deg", diameter,
+          "0 or in [0.25, 60]");
+  scene.sun_diameter = glm::radians(static_cast<float>(diameter));
+  sun.done();
+}
+
+void readSky(Scene& scene, detail::SceneTable sky, const std::filesystem::path& folder) {
+  constexpr float kIrradiance = 0.2f;
+  constexpr double kMostIrradiance = 1000.;
+  using Kind = SceneSky::Kind;
+  static const std::map<std::string, Kind> kinds{{"none", Kind::none},
+                                                 {"uniform", Kind::uniform},
+                                                 {"overcast", Kind::overcast},
+                                                 {"preetham", Kind::preetham},
+                                                 {"image", Kind::image}};
+  const std::string name = sky.text("kind", "none");
+  const auto kind = kinds.find(name);
+  if (kind == kinds.end())
+    throw InvalidInput(scene.origin + ": sky.kind = \"" + name +
+                       "\": must be none, uniform, overcast, preetham or image");
+  SceneSky& read = scene.sky;
+  read.kind = kind->second;
+  if (read.kind != Kind::none) {
+    read.own_colours = !sky.isList("irradiance");
+    if (read.kind != Kind::preetham || sky.has("irradiance"))
+      read.irradiance = sky.perBand("irradiance", glm::vec3(kIrradiance), kMostIrradiance);
+  }
+  if (read.kind == Kind::preetham) {
+    read.turbidity = sky.number("turbidity", read.turbidity, kLeastTurbidity, kMostTurbidity, "in [1.7, 10]");
+    read.coloured_sun = sky.flag("coloured_sun", read.coloured_sun);
+  }
+  if (read.kind == Kind::image) {
+    if (!sky.has("file")) throw InvalidInput(scene.origin + ": [sky] of kind \"image\" has no key file");
+    read.file = sky.text("file", "");
+    ImageSky image =
+        imageSky(readImage(folder / read.file), double{degrees(sky, "rotation_deg", -360., 360., "in [-360, 360]")});
+    read.negative_values = image.negative_values;
+    read.image = std::make_shared<const SkyMap>(std::move(image.sky));
+  }
+  sky.done();
+}
+
 Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   for (const auto& [key, node] : table) {
-    static constexpr std::array known{"name", "tree", "stand", "leaf", "wood", "ground", "sun", "camera"};
+    static constexpr std::array known{"name", "tree", "stand", "leaf", "wood", "ground", "sun", "sky", "camera"};
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       throw InvalidInput(fmt::format("{}:{}: unknown key \"{}\"; see: sunfleck --help scene", file.string(),
                                      node.source().begin.line, key.str()));
@@ -180,10 +232,9 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   for (const detail::SceneTable* read : {&leaf, &wood, &ground}) read->done();
   readTrees(scene, table.get("tree"), optics, file);
   readStand(scene, section("stand"));
-  detail::SceneTable sun = section("sun");
-  scene.sun_zenith = degrees(sun, "zenith_deg", 0., 89.9, "in [0, 89.9]");
-  scene.sun_azimuth = degrees(sun, "azimuth_deg", -360., 360., "in [-360, 360]");
-  sun.done();
+  readSun(scene, section("sun"));
+  readSky(scene, section("sky"), file.parent_path());
+  sunAndSky(scene);  // refuses a sky that cannot be
   if (table.contains("camera")) readCamera(scene, section("camera"));
   if (const toml::node* name = table.get("name"); name && !name->is_string())
     throw InvalidInput(fmt::format("{}:{}: name: must be a text in quotes", file.string(), name->source().begin.line));
@@ -282,7 +333,7 @@ Scene readScene(const std::string& name_or_file, const ImportRules& rules) {
 
 std::string sceneFileHelp() {
   return R"(A scene is a TOML file. Every key may be left out; the value shown is the default.
-Lengths are metres, z is up. Optics are one number, or three for red, green and blue.
+Lengths are metres, z is up. Optics and irradiances are one number, or three for red, green and blue.
 
 name = "file name"            # what reports call it
 
@@ -324,6 +375,18 @@ albedo = 0.0                  # 0 to 1; 0: no ground. trace takes it for periodi
 [sun]
 zenith_deg = 0.0              # 0 overhead, to 89.9
 azimuth_deg = 0.0             # where the sun stands, from +x towards +y
+irradiance = 1.0              # of a plane that faces the sun, 0 to 10; 0: no sun. All results are relative to 1
+diameter_deg = 0.0            # of its disc, 0.25 to 60; the real one has 0.533; 0: a point
+
+[sky]                         # trace alone knows a sky, and a sun of other irradiance or with a disc
+kind = "none"                 # none | uniform | overcast | preetham | image
+# irradiance = 0.2            # of a horizontal plane, 0 to 1000, by the sun's unit; one number keeps a sky's own colours,
+                              # as the mean of its bands. Preetham's sky has its own if not given
+# turbidity = 3.0             # preetham: haze of the air, 1.7 to 10; made for 2 to 6 and suns above 15 degrees
+# coloured_sun = false        # preetham: multiply the sun's irradiance by its colour behind that air
+# file = "sky.exr"            # image: .exr or .hdr beside the scene file, a panorama in latitude and longitude with the
+                              # zenith on top. Its lower half is not used; a sun in it adds to [sun]
+# rotation_deg = 0.0          # image: azimuth of its middle column; to the right of it the azimuth falls
 
 [camera]                      # orthographic; shows the whole stand if left out
 # target = [0.0, 0.0, 4.0]    # point in the middle of the picture

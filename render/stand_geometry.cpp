@@ -20,6 +20,11 @@ void requireModelled(const Scene& scene) {
     require(stand.trees[i].rotation == 0.f, from + "stand.positions: rotation_deg of tree " + std::to_string(i + 1),
             std::round(glm::degrees(stand.trees[i].rotation) * 1e4f) / 1e4f,
             "0 for the models: their maps serve translated copies only (trace takes any)");
+  if (scene.sky.kind != SceneSky::Kind::none || scene.sun_irradiance != glm::vec3(1.f) || scene.sun_diameter != 0.f)
+    throw InvalidInput(
+        from +
+        "[sky], sun.irradiance and sun.diameter_deg: must be left out for the models, which know the sun "
+        "as a point of irradiance 1 alone (trace takes any)");
   const Bounds box = leafBounds(*scene.kinds[0].mesh);
   periodsAround(stand, box);
   requireApart(stand, box);

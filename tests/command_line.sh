@@ -305,6 +305,15 @@ refuses "must not be in another file too" merge part1.trace two.trace -o x.trace
 refuses "made with" trace leaf.obj --period 3 3 --paths 2e4 --checkpoint part1.trace
 refuses "must be a trace file" merge garbage.obj -o x.trace
 refuses "named with the extension .trace" trace leaf.obj --checkpoint x.txt
+# Skies: traces tell of their share; models refuse them; a checkpoint of another light is refused.
+printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "periodic"\nperiod = [2, 2]\n[sky]\nkind = "overcast"\n' >sky.toml
+does "of the light, the sky's" trace sky.toml --paths 1000 --checkpoint sky.trace
+does '"sky_share": 0.16666' trace sky.toml --paths 1000 --json
+does "HDRF" trace sky.toml --only-brf --brf 0:60:60 --brf-paths 1000
+sed -i 's/overcast/uniform/' sky.toml
+refuses "sky.trace: made with light" trace sky.toml --paths 1000 --checkpoint sky.trace
+for command in "validate" "render -o x.png"; do refuses "which know the sun as a point" $command sky.toml; done
+refuses "--mes: must be for light from one direction" trace sky.toml --only-brf --brf 0:60:60 --mes x.mes
 refuses "K/N" trace leaf.obj --checkpoint x.trace --part 4/3
 refuses "relative error" trace leaf.obj --target 5x
 refuses "--time" trace leaf.obj --time 5y

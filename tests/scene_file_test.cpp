@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/require.hpp"
+#include "render/image_file.hpp"
 #include "render/stand_geometry.hpp"
 
 namespace {
@@ -242,3 +243,81 @@ TEST_F(SceneFile, PlacesPeriodicTreesInOnePeriod) {
 }
 
 }  // namespace
+
+// Check that every key of the sun and of each kind of sky arrives, and the light that follows from it: irradiances as
+// asked for, or Preetham's own with its sun's colour at the same luminance.
+TEST_F(SceneFile, BringsSunAndSky) {
+  const auto lightOf = [&](const std::string& toml) { return sunAndSky(readScene(write("s.toml", toml))); };
+  const Scene scene = readScene(write("s.toml", "[sun]\nirradiance = [1, 0.9, 0.5]\ndiameter_deg = 0.533\n"));
+  EXPECT_EQ(scene.sun_irradiance, glm::vec3(1.f, 0.9f, 0.5f));
+  EXPECT_NEAR(scene.sun_diameter, 0.0093026, 1e-6);
+  EXPECT_EQ(sunAndSky(scene).sky, nullptr);
+  EXPECT_NEAR(lightOf("[sky]\nkind = \"uniform\"\n").sky->irradiance().y, 0.2, 1e-7);
+  const glm::dvec3 coloured = lightOf("[sky]\nkind = \"overcast\"\nirradiance = [0.1, 0.2, 0.3]\n").sky->irradiance();
+  EXPECT_NEAR(coloured.x, 0.1, 1e-6);
+  EXPECT_NEAR(coloured.z, 0.3, 1e-6);
+
+  const std::string clear = "[sun]\nzenith_deg = 60\nazimuth_deg = 90\n[sky]\nkind = \"preetham\"\nturbidity = 2.5\n";
+  const SunAndSky own = lightOf(clear);
+  EXPECT_GT(own.sky->irradiance().z, own.sky->irradiance().x);                                       // blue
+  EXPECT_GT(own.sky->radiance({0.f, 0.8f, 0.6f}).x, 2.f * own.sky->radiance({0.f, -0.8f, 0.6f}).x);  // towards the sun
+  EXPECT_EQ(own.sun, glm::vec3(1.f));
+  const SunAndSky warm = lightOf(clear + "coloured_sun = true\nirradiance = 0.25\n");
+  EXPECT_NEAR(0.2126f * warm.sun.x + 0.7152f * warm.sun.y + 0.0722f * warm.sun.z, 1.f, 1e-6f);
+  EXPECT_GT(warm.sun.x, 1.2f * warm.sun.z);
+  const glm::dvec3 sky = warm.sky->irradiance();
+  EXPECT_NEAR((sky.x + sky.y + sky.z) / 3., 0.25, 1e-6);
+  EXPECT_NEAR(sky.z / sky.x, own.sky->irradiance().z / own.sky->irradiance().x, 1e-5);
+  EXPECT_NEAR(lightOf(clear + "irradiance = [0.1, 0.1, 0.1]\n").sky->irradiance().z, 0.1, 1e-6);
+
+  Image panorama{.width = 4, .height = 2, .channels = {"R", "G", "B"}, .values = std::vector<float>(24, 1.f)};
+  for (std::size_t pixel = 0; pixel < 4; ++pixel) panorama.values[3 * pixel] = static_cast<float>(pixel);
+  panorama.values[1] = -1.f;
+  write("sky.exr", "");
+  const std::string file = write("s.toml", "[sky]\nkind = \"image\"\nfile = \"sky.exr\"\nrotation_deg = 90\n");
+  writeImage(std::filesystem::path(file).parent_path() / "sky.exr", panorama, 1.f);
+  const Scene photographed = readScene(file);
+  EXPECT_EQ(photographed.sky.negative_values, 1u);
+  const std::shared_ptr<const SkyMap> seen = sunAndSky(photographed).sky;
+  EXPECT_NEAR((seen->irradiance().x + seen->irradiance().y + seen->irradiance().z) / 3., 0.2, 1e-6);
+  // The third pixel is right of the middle, which looks along +y: from there 45 degrees towards +x.
+  EXPECT_NEAR(seen->radiance({0.6f, 0.6f, 0.5f}).x, 2.f * seen->radiance({0.6f, 0.6f, 0.5f}).z, 1e-6f);
+}
+
+TEST_F(SceneFile, RefusesWhatNoSunOrSkyIs) {
+  EXPECT_EQ(refusal("[sky]\nkind = \"clear\"\n"),
+            "s.toml: sky.kind = \"clear\": must be none, uniform, overcast, preetham or image");
+  EXPECT_EQ(refusal("[sky]\nkind = \"uniform\"\nturbidity = 3\n"),
+            "s.toml:3: unknown key \"turbidity\" in [sky]; see: sunfleck --help scene");
+  EXPECT_EQ(refusal("[sky]\nirradiance = 0.3\n"),
+            "s.toml:2: unknown key \"irradiance\" in [sky]; see: sunfleck --help scene");
+  EXPECT_EQ(refusal("[sky]\nkind = \"preetham\"\nturbidity = 1.5\n"),
+            "s.toml:3: sky.turbidity = 1.5: must be in [1.7, 10]");
+  EXPECT_EQ(refusal("[sky]\nkind = \"preetham\"\ncoloured_sun = 1\n"),
+            "s.toml:3: sky.coloured_sun = 1: must be true or false");
+  EXPECT_NE(
+      refusal("[sky]\nkind = \"preetham\"\nturbidity = 8\n[sun]\nzenith_deg = 89.9\n").find("told by [sky] irradiance"),
+      std::string::npos);
+  EXPECT_EQ(refusal("[sky]\nkind = \"preetham\"\nturbidity = 8\nirradiance = 0.3\n[sun]\nzenith_deg = 89.9\n"),
+            "accepted");
+  EXPECT_EQ(refusal("[sky]\nkind = \"image\"\n"), "s.toml: [sky] of kind \"image\" has no key file");
+  EXPECT_NE(refusal("[sky]\nkind = \"image\"\nfile = \"no.exr\"\n").find("no.exr: must be a file that can be read"),
+            std::string::npos);
+  write("bad.exr", "this is no picture");
+  EXPECT_NE(refusal("[sky]\nkind = \"image\"\nfile = \"bad.exr\"\n").find("bad.exr: cannot be read"),
+            std::string::npos);
+  write("sky.png", "");
+  EXPECT_NE(refusal("[sky]\nkind = \"image\"\nfile = \"sky.png\"\n").find("must be .exr or .hdr"), std::string::npos);
+  EXPECT_EQ(refusal("[sun]\ndiameter_deg = 0.1\n"), "s.toml: sun.diameter_deg = 0.1: must be 0 or in [0.25, 60]");
+  EXPECT_EQ(refusal("[sun]\nirradiance = 11\n"),
+            "s.toml:2: sun.irradiance = 11: must be in [0, 10]: one number, or three for red, green and blue");
+}
+
+// Check that the models, which know the sun as a point alone, refuse other light.
+TEST_F(SceneFile, LightThatTheModelsDoNotKnowIsRefused) {
+  write("tree.obj", kSquare);
+  const std::string tree = "[tree]\nfile = \"tree.obj\"\n";
+  EXPECT_NO_THROW(requireModelled(readScene(write("s.toml", tree))));
+  for (const char* light : {"[sky]\nkind = \"uniform\"\n", "[sun]\ndiameter_deg = 0.5\n", "[sun]\nirradiance = 0.5\n"})
+    EXPECT_THROW(requireModelled(readScene(write("s.toml", tree + light))), InvalidInput) << light;
+}

@@ -52,7 +52,7 @@ TEST(R1_TraceCells, LightIsAbsorbedWhereItsAbsorbersAre) {
       EXPECT_EQ(cells.size(cell.cell), glm::dvec3(1.));
     }
     EXPECT_EQ(cells.corner(), glm::dvec3(place) + glm::dvec3(0., 0., 1.));
-    EXPECT_DOUBLE_EQ(job.incidentFlux(), 2.);
+    EXPECT_DOUBLE_EQ(job.incidentFlux(0), 2.);
   }
 }
 

@@ -32,11 +32,24 @@ std::optional<double> categoryNoise(const ForwardResult& reference, std::span<co
 
 }  // namespace
 
+std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& bands) {
+  const SunAndSky shining = sunAndSky(scene);
+  std::vector<TraceLight> lights;
+  for (const int band : bands) {
+    TraceLight& light = lights.emplace_back(TraceLight{.sun = scene.sun(),
+                                                       .ground_albedo = scene.ground_albedo[band],
+                                                       .sun_irradiance = shining.sun[band],
+                                                       .sun_diameter = scene.sun_diameter,
+                                                       .sky = shining.sky,
+                                                       .sky_band = band});
+    for (const TreeKind& kind : scene.kinds)
+      light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
+  }
+  return lights;
+}
+
 TraceLight traceLight(const Scene& scene, int band) {
-  TraceLight light{.sun = scene.sun(), .ground_albedo = scene.ground_albedo[band]};
-  for (const TreeKind& kind : scene.kinds)
-    light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
-  return light;
+  return traceLights(scene, {band}).front();
 }
 
 std::string kindOf(const Scene& scene) {

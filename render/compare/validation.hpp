@@ -45,8 +45,10 @@ struct Validation {
   LeafOptics optics() const { return scene.kinds[0].leaf[static_cast<std::size_t>(effort.band)]; }
 };
 
-// The scene's sun, leaves, wood and ground in one band, for Monte Carlo.
-TraceLight traceLight(const Scene& scene, int band);
+// The scene's sun, sky, leaves, wood and ground in these bands, for Monte Carlo. Throws InvalidInput as sunAndSky()
+// does.
+std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& bands);
+TraceLight traceLight(const Scene& scene, int band);  // the same in one
 
 std::string kindOf(const Scene& scene);  // "single tree", "16 trees" or "periodic"
 std::string labelOf(Model model);        // "SS", "SPP", "SPPG"

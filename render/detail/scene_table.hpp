@@ -43,6 +43,13 @@ class SceneTable {
     return static_cast<int>(*value);
   }
 
+  bool flag(const std::string& key, bool fallback) {
+    const toml::node* node = take(key);
+    if (!node) return fallback;
+    if (!node->is_boolean()) refuse(*node, key, "true or false");
+    return *node->value<bool>();
+  }
+
   std::string text(const std::string& key, const std::string& fallback) {
     const toml::node* node = take(key);
     if (!node) return fallback;
@@ -57,13 +64,15 @@ class SceneTable {
     return numbersOf(*node, key, count, low, high, rule);
   }
 
+  bool isList(const std::string& key) const { return has(key) && table_->get(key)->is_array(); }
+
   // One number for all bands, or one for each.
-  glm::vec3 perBand(const std::string& key, const glm::vec3& fallback) {
+  glm::vec3 perBand(const std::string& key, const glm::vec3& fallback, double high = 1.) {
     const toml::node* node = take(key);
     if (!node) return fallback;
-    const std::string rule = "in [0, 1]: one number, or three for red, green and blue";
-    if (!node->is_array()) return glm::vec3(static_cast<float>(checked(*node, key, 0., 1., rule)));
-    const std::vector<double> v = numbersOf(*node, key, kBands, 0., 1., rule);
+    const std::string rule = fmt::format("in [0, {}]: one number, or three for red, green and blue", high);
+    if (!node->is_array()) return glm::vec3(static_cast<float>(checked(*node, key, 0., high, rule)));
+    const std::vector<double> v = numbersOf(*node, key, kBands, 0., high, rule);
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
   }
 

@@ -26,9 +26,13 @@ struct BrfJob::Parts {
         bands(std::move(of_bands)),
         views(std::move(of_views)),
         paths_per_unit(per_unit),
-        optics(bands, scene.prototypes.size()) {
+        optics(bands, scene.prototypes.size()),
+        light(bands) {
     for (const ViewDirection& view : views)
       sights.push_back(sunlight(static_cast<float>(view.zenith), static_cast<float>(view.azimuth)));
+    for (const TraceLight& band : bands)
+      irradiance.push_back(-double{band.sun.z} * double{band.sun_irradiance} +
+                           (band.sky ? band.sky->irradiance()[band.sky_band] : 0.));
   }
 
   std::uint64_t groups() const { return views.size() + 1; }
@@ -54,6 +58,8 @@ struct BrfJob::Parts {
   std::vector<Direction> sights;  // from the viewer to the stand
   std::uint64_t paths_per_unit;
   AnyLanes optics;
+  SceneLight light;
+  std::vector<double> irradiance;  // of a horizontal plane, of each band [1]
 };
 
 BrfJob::BrfJob(const RayScene& scene, std::vector<TraceLight> bands, std::vector<ViewDirection> views,
@@ -100,10 +106,8 @@ TraceIdentity BrfJob::identity() const {
 void BrfJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const {
   const std::uint64_t group = unit % groups(), count = parts_->paths_per_unit;
   const bool drawn = group == parts_->views.size();
-  const Direction sun = parts_->bands.front().sun;
-  const double factor = std::numbers::pi / (-double{sun.z} * static_cast<double>(count));
   parts_->optics.visit([&](const auto& optics) {
-    const EyePaths paths(parts_->scene, optics, sun, parts_->scene.low);
+    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->scene.low);
     const EvenSet set(Stream::reflectance, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
       PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));
@@ -111,6 +115,8 @@ void BrfJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, con
       const Direction sight = drawn ? lambertDirection({0.f, 0.f, -1.f}, random) : parts_->sights[group];
       const auto seen = paths.look(from, sight, random);
       for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band) {
+        const double factor =
+            std::numbers::pi / (parts_->irradiance[static_cast<std::size_t>(band)] * static_cast<double>(count));
         const std::array parts{double{seen.leaf_once[band]}, double{seen.wood_once[band]},
                                double{seen.ground_once[band]}, double{seen.more[band]}};
         const std::size_t first = parts_->bin(group, band);

@@ -28,14 +28,15 @@ struct ReflectanceParts {
 
 // Of one band.
 struct BrfResult {
-  std::vector<ReflectanceParts> views;  // bidirectional reflectance factors, in the order of the directions
+  std::vector<ReflectanceParts> views;  // reflectance factors, in the order of the directions
   ReflectanceParts albedo;              // of the hemisphere: reflected flux over incident flux
   std::uint64_t paths = 0;
 };
 
-// (R12) Bidirectional reflectance factors of a periodic stand over its ground, which lies at the bottom of the box, by
+// (R12) Reflectance factors of a periodic stand over its ground, which lies at the bottom of the box, by
 // Monte Carlo from the top of one period down, all bands on one path. Unit u is of view u % groups; the last group is
-// the albedo, whose views are drawn.
+// the albedo, whose views are drawn. Under a point sun alone the factors are bidirectional; light of a disc or a sky
+// makes them hemispherical-directional: radiance by what a white plane would send under all of that light.
 class BrfJob final : public TraceJob {
  public:
   //   scene  must outlive the job

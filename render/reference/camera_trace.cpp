@@ -69,7 +69,8 @@ struct CameraJob::Parts {
         rays(of_rays),
         ground(ground_height - scene.origin.z),
         samples_per_unit(samples),
-        optics(bands, scene.prototypes.size()) {
+        optics(bands, scene.prototypes.size()),
+        light(bands) {
     rays.corner -= scene.origin;
   }
 
@@ -103,6 +104,7 @@ struct CameraJob::Parts {
   float ground;    // height about the scene's origin [m]
   int samples_per_unit;
   AnyLanes optics;
+  SceneLight light;
 };
 
 CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays, float ground_height,
@@ -152,7 +154,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
   const int band_count = static_cast<int>(parts_->bands.size());
   const double share = 1. / samples, share_of_tile = share / tile.pixels();
   parts_->optics.visit([&](const auto& optics) {
-    const EyePaths paths(parts_->scene, optics, parts_->bands.front().sun, parts_->ground);
+    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->ground);
     using Lanes = std::remove_cvref_t<decltype(optics.ground().reflectance)>;
     Packet<Lanes::kBands> packet;
     const auto finish = [&] {
@@ -162,7 +164,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
           const Seen<Lanes::kBands>& seen = packet.seen[i];
           const double once =
               double{seen.leaf_once[band]} + double{seen.wood_once[band]} + double{seen.ground_once[band]};
-          const double radiance = once + double{seen.more[band]};
+          const double radiance = once + double{seen.more[band]} + double{seen.light[band]};
           if (radiance == 0.) continue;
           const std::size_t pixel = parts_->pixel(packet.x[i], packet.y[i], band);
           tally.add(pixel, share * radiance);

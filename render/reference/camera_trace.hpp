@@ -24,18 +24,18 @@ struct PixelRays {
 
 // Of one band.
 struct CameraResult {
-  Image radiance;  // channels "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr], and "single.Y":
-                   // what of it was scattered once
+  Image radiance;  // channels "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr], the sky's itself
+                   // where nothing is met, and "single.Y": what of it was scattered once
   Image standard_error;  // channel "Y": of the radiance of each pixel
   Estimate mean;         // of all pixels
   std::uint64_t paths = 0;
   double seconds = 0., cpu_seconds = 0.;
 };
 
-// (R2) Monte Carlo from the camera to the sun, with the sun sampled at every hit, before a black sky. A unit adds
-// `samples_per_unit` to each pixel of a square tile, evenly spread over the pixel. A ground plane without end (albedo >
-// 0) lies at `ground_height` [m] and is seen from above; under a periodic stand it must not lie above the bottom of the
-// box.
+// (R2) Monte Carlo from the camera to the light, with sun and sky sampled at every hit (R18); where a line of sight
+// meets nothing it shows the sky. A unit adds `samples_per_unit` to each pixel of a square tile, evenly spread over the
+// pixel. A ground plane without end (albedo > 0) lies at `ground_height` [m] and is seen from above; under a periodic
+// stand it must not lie above the bottom of the box.
 class CameraJob final : public TraceJob {
  public:
   //   scene  must outlive the job

@@ -7,10 +7,10 @@
 #include "core/elapsed.hpp"
 #include "core/require.hpp"
 #include "render/reference/detail/identity_text.hpp"
+#include "render/reference/detail/incident_light.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/detail/scene_optics.hpp"
-#include "render/reference/detail/sunlit_faces.hpp"
 #include "render/reference/trace_run.hpp"
 
 namespace sunfleck {
@@ -20,20 +20,21 @@ namespace {
 // Where each number is kept among the bins of a run of B bands.
 struct Layout {
   std::size_t bands, leaves, cells;  // leaves, cells: as many as are kept
+  std::size_t direct_bands;          // of direct light: one for all bands where it is the same share in all, or each
 
   enum Total { reflected, absorbed_leaves, absorbed_wood, absorbed_ground, arriving_ground };
   static constexpr std::size_t kTotals = 5;
   std::size_t total(Total which, int band) const { return which * bands + index(band); }
-  // Direct light is the same in all bands.
   std::size_t direct() const { return kTotals * bands; }
+  std::size_t directBand(int band) const { return direct_bands == 1 ? 0 : index(band); }
 
   enum Leaving { upward, downward };
-  std::size_t orders(Leaving how) const { return direct() + 1 + how * OrderTable::kBins * bands; }
+  std::size_t orders(Leaving how) const { return direct() + direct_bands + how * OrderTable::kBins * bands; }
   std::size_t order(Leaving how, std::size_t bin, int band) const { return orders(how) + bin * bands + index(band); }
 
   // Of each leaf: the light of each band on its front, on its back, and on both; and the direct on both.
-  std::size_t firstLeaf() const { return direct() + 1 + 2 * OrderTable::kBins * bands; }
-  std::size_t ofLeaf() const { return 3 * bands + 1; }
+  std::size_t firstLeaf() const { return orders(downward) + OrderTable::kBins * bands; }
+  std::size_t ofLeaf() const { return 3 * bands + direct_bands; }
   std::size_t leafSide(std::size_t leaf, bool front) const {
     return firstLeaf() + leaf * ofLeaf() + (front ? 0 : bands);
   }
@@ -68,22 +69,12 @@ void addBothSides(const Layout& layout, UnitTally& tally) {
 template <int N>
 class ForwardPaths {
  public:
-  ForwardPaths(const RayScene::Geometry& scene, const SunlitFaces& faces, Direction sun, const SceneOptics<N>& optics,
+  ForwardPaths(const RayScene::Geometry& scene, const IncidentLight& light, const SceneOptics<N>& optics,
                const Layout& layout, const TraceCells* cells, double share, UnitTally& tally)
-      : scene_(scene),
-        faces_(faces),
-        sun_(sun),
-        optics_(optics),
-        layout_(layout),
-        cells_(cells),
-        share_(share),
-        tally_(tally) {}
+      : scene_(scene), light_(light), optics_(optics), layout_(layout), cells_(cells), share_(share), tally_(tally) {}
 
   void trace(PathRandom& random) {
-    const Pair start = random.pair();
-    glm::vec3 from = faces_.start(double{start.u}, double{start.v});
-    glm::vec3 direction = sun_;
-    BandLanes<N> weight = BandLanes<N>::all(1.f);
+    auto [from, direction, weight] = light_.enter<N>(random);
     int reflections = 0, passes = 0;
     for (int scatterings = 0;; ++scatterings) {
       Hit hit = scene_.closest(from, direction, Coherence::incoherent);
@@ -91,7 +82,7 @@ class ForwardPaths {
       if (none) leave(direction.z >= 0.f ? Layout::upward : Layout::downward, weight, reflections, passes);
       if (none && direction.z >= 0.f) return;
       if (none) meetGround(hit, from, direction);
-      if (scatterings == 0) arriveDirect(hit);
+      if (scatterings == 0) arriveDirect(hit, weight);
       if (keepsLeaf(hit)) addTo(layout_.leafSide(hit.leaf, hit.front), weight);
       const BandLanes<N> arriving = weight;
       Onward onward = optics_.scatter(hit, weight, random);
@@ -121,9 +112,11 @@ class ForwardPaths {
     addTo(layout_.order(how, OrderTable::bin(reflections, passes), 0), weight);
   }
 
-  void arriveDirect(const Hit& hit) {
-    if (hit.surface == Surface::none) tally_.add(layout_.direct(), share_);
-    if (keepsLeaf(hit)) tally_.add(layout_.leafDirect(hit.leaf), share_);
+  void arriveDirect(const Hit& hit, const BandLanes<N>& weight) {
+    if (hit.surface != Surface::none && !keepsLeaf(hit)) return;
+    const std::size_t first = hit.surface == Surface::none ? layout_.direct() : layout_.leafDirect(hit.leaf);
+    for (std::size_t i = 0; i < layout_.direct_bands; ++i)
+      tally_.add(first + i, share_ * double{weight[static_cast<int>(i)]});
   }
 
   bool keepsLeaf(const Hit& hit) const { return hit.surface == Surface::leaf && layout_.leaves > 0; }
@@ -149,8 +142,7 @@ class ForwardPaths {
   }
 
   const RayScene::Geometry& scene_;
-  const SunlitFaces& faces_;
-  Direction sun_;
+  const IncidentLight& light_;
   const SceneOptics<N>& optics_;
   const Layout& layout_;
   const TraceCells* cells_;  // none where they are not asked for
@@ -165,17 +157,18 @@ struct ForwardJob::Parts {
       : scene(of.geometry()),
         bands(std::move(of_bands)),
         paths_per_unit(per_unit),
-        faces(scene, bands.front().sun),
+        light(scene, bands),
         optics(bands, scene.prototypes.size()),
         cells(detail.cells),
         layout{.bands = bands.size(),
                .leaves = detail.leaves ? scene.leaf_area.size() : 0,
-               .cells = cells ? cells->count() : 0} {}
+               .cells = cells ? cells->count() : 0,
+               .direct_bands = light.sameInAllBands() ? 1 : bands.size()} {}
 
   const RayScene::Geometry& scene;
   std::vector<TraceLight> bands;
   std::uint64_t paths_per_unit;
-  SunlitFaces faces;
+  IncidentLight light;
   AnyLanes optics;
   std::optional<TraceCells> cells;
   Layout layout;
@@ -208,8 +201,8 @@ TraceIdentity ForwardJob::identity() const {
 void ForwardJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const {
   const std::uint64_t count = parts_->paths_per_unit;
   parts_->optics.visit([&](const auto& optics) {
-    ForwardPaths paths(parts_->scene, parts_->faces, parts_->bands.front().sun, optics, parts_->layout,
-                       parts_->cells ? &*parts_->cells : nullptr, 1. / static_cast<double>(count), tally);
+    ForwardPaths paths(parts_->scene, parts_->light, optics, parts_->layout, parts_->cells ? &*parts_->cells : nullptr,
+                       1. / static_cast<double>(count), tally);
     const EvenSet set(Stream::light, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
       PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));
@@ -224,19 +217,20 @@ std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
   std::vector<ForwardResult> results;
   for (int band = 0; band < static_cast<int>(layout.bands); ++band) {
     ForwardResult& r = results.emplace_back();
+    r.sky_share = parts_->light.skyShare(band);
     const auto total = [&](Layout::Total which) { return sums.estimate(layout.total(which, band)); };
     r.reflected = total(Layout::reflected);
     r.absorbed_leaves = total(Layout::absorbed_leaves);
     r.absorbed_wood = total(Layout::absorbed_wood);
     r.arriving_ground = total(Layout::arriving_ground);
-    r.arriving_ground_direct = sums.estimate(layout.direct());
+    r.arriving_ground_direct = sums.estimate(layout.direct() + layout.directBand(band));
     r.absorbed_ground = total(Layout::absorbed_ground);
     for (std::size_t bin = 0; bin < OrderTable::kBins; ++bin) {
       r.reflected_by_order.set(bin, sums.estimate(layout.order(Layout::upward, bin, band)));
       r.arriving_ground_by_order.set(bin, sums.estimate(layout.order(Layout::downward, bin, band)));
     }
     for (std::size_t leaf = 0; leaf < layout.leaves; ++leaf) {
-      const double per_area = parts_->faces.flux() / parts_->scene.leaf_area[leaf];
+      const double per_area = parts_->light.flux(band) / parts_->scene.leaf_area[leaf];
       const auto irradiance = [&](std::size_t bin) {
         const Estimate share = sums.estimate(bin);
         return Estimate{per_area * share.value, per_area * share.standard_error};
@@ -244,7 +238,7 @@ std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
       const auto at = static_cast<std::size_t>(band);
       r.leaf_front.push_back(irradiance(layout.leafSide(leaf, true) + at));
       r.leaf_back.push_back(irradiance(layout.leafSide(leaf, false) + at));
-      r.leaf_direct.push_back(irradiance(layout.leafDirect(leaf)));
+      r.leaf_direct.push_back(irradiance(layout.leafDirect(leaf) + layout.directBand(band)));
       const Estimate whole = irradiance(layout.leafBoth(leaf) + at);
       r.leaf_irradiance.push_back(whole.value);
       r.leaf_standard_error.push_back(whole.standard_error);
@@ -266,8 +260,8 @@ std::vector<CellAbsorption> ForwardJob::cells(const TraceSums& sums, std::size_t
   return met;
 }
 
-double ForwardJob::incidentFlux() const {
-  return parts_->faces.flux();
+double ForwardJob::incidentFlux(int band) const {
+  return parts_->light.flux(band);
 }
 
 double ForwardJob::relativeError(const TraceSums& sums) const {

@@ -16,20 +16,23 @@
 
 namespace sunfleck {
 
-// Where one band of the sun's light ends up, as shares of the incident flux: the sunlight that enters the traced box. A
-// periodic stand is entered through the horizontal top of one period; a stand without period through the sunlit faces
-// of the box of its trees, the top and, unless the sun is overhead, the sides. Light that leaves downward arrives at
-// the ground, wherever it leaves the box; light that leaves upward is reflected. So reflected + absorbed_leaves +
-// absorbed_wood + absorbed_ground = 1.
+// Where one band of light ends up, as shares of the incident flux: the light of sun and sky that enters the traced box.
+// A periodic stand is entered through the horizontal top of one period; a stand without period through the faces of the
+// box of its trees that the light comes to, the top and, but for light from overhead, the sides. Light that leaves
+// downward arrives at the ground, wherever it leaves the box; light that leaves upward is reflected. So reflected +
+// absorbed_leaves + absorbed_wood + absorbed_ground = 1; several bands under a sky share paths that are not drawn for
+// each alone, and keep to that within their standard errors.
 struct ForwardResult {
+  double sky_share = 0.;  // of the incident flux; the rest is the sun's
   Estimate reflected;
   Estimate absorbed_leaves, absorbed_wood;
   Estimate arriving_ground;         // every arrival counted, also after reflection by the ground itself
   Estimate arriving_ground_direct;  // of these, the light that met nothing before
   Estimate absorbed_ground;
   OrderTable reflected_by_order, arriving_ground_by_order;  // by scatterings by leaves
-  // Of each leaf of the prototypes, kind after kind: irradiance per one-sided area, for sun irradiance 1 on a plane
-  // facing the sun; the mean over the stand's trees of the kind.
+  // Of each leaf of the prototypes, kind after kind: irradiance per one-sided area, in the unit of the
+  // light's: for a sun of irradiance 1 alone, relative to that on a plane facing it; the mean over the stand's trees of
+  // the kind.
   std::vector<double> leaf_irradiance;      // E, both sides together [1]
   std::vector<double> leaf_standard_error;  // of E [1]
   std::vector<Estimate> leaf_front,
@@ -52,8 +55,8 @@ struct ForwardDetail {
   std::optional<TraceCells> cells{};  // of the scene, what is absorbed in each
 };
 
-// (R1) Monte Carlo from the sun to the leaves, all bands on one path. Leaves scatter by Lambert's law on both sides,
-// wood and ground on one. The ground lies at the bottom of the box.
+// (R1) Monte Carlo from the light (R19) to the leaves, all bands on one path. Leaves scatter by Lambert's law on both
+// sides, wood and ground on one. The ground lies at the bottom of the box.
 class ForwardJob final : public TraceJob {
  public:
   //   scene  must outlive the job
@@ -70,7 +73,7 @@ class ForwardJob final : public TraceJob {
   std::vector<ForwardResult> results(const TraceSums& sums) const;  // of each band
   // Of those cells where any light was absorbed, in their order; their sums are those of the results.
   std::vector<CellAbsorption> cells(const TraceSums& sums, std::size_t band) const;
-  double incidentFlux() const;  // for sun irradiance 1: what the shares are of [m^2]
+  double incidentFlux(int band) const;  // that the shares are of, relative to a sun of irradiance 1 [m^2]
   // The largest standard error of a share of the light, relative to it; shares below 1 % are left out.
   double relativeError(const TraceSums& sums) const;
 

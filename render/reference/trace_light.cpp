@@ -1,5 +1,6 @@
 #include "render/reference/trace_light.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -13,6 +14,19 @@ void validate(const TraceLight& light) {
   const double length = glm::length(glm::dvec3(light.sun));
   require(std::abs(length - 1.) < 1e-4, "length of the sun's direction", length, "1");
   require(light.sun.z < 0.f, "z of the sun's direction", light.sun.z, "below 0: sunlight travels down");
+  require(light.sun_irradiance >= 0.f && light.sun_irradiance <= kMostSunIrradiance, "irradiance of the sun",
+          light.sun_irradiance, "in [0, 10]");
+  require(
+      light.sun_diameter == 0.f || (light.sun_diameter >= kLeastSunDiameter && light.sun_diameter <= kMostSunDiameter),
+      "diameter of the sun", light.sun_diameter, "0 or from 0.25 to 60 degrees, in radians");
+  const float height = std::asin(std::min(-light.sun.z, 1.f));
+  require(
+      light.sun_irradiance == 0.f || light.sun_diameter == 0.f || 0.5f * light.sun_diameter < height,
+      "diameter of the sun", light.sun_diameter,
+      "below twice the sun's height of " + std::to_string(height) + " rad, so that the disc stands above the horizon");
+  require(light.sky_band >= 0 && light.sky_band < kBands, "band of the sky", light.sky_band, "0, 1 or 2");
+  if (!(light.sun_irradiance > 0.f) && !(light.sky && light.sky->irradiance()[light.sky_band] > 0.))
+    throw InvalidInput("light: must come from the sun or from the sky in each band traced");
   const auto validateTree = [](const TreeOptics& tree) {
     validate(tree.leaf);
     require(tree.wood_reflectance >= 0.f && tree.wood_reflectance <= 1.f, "wood reflectance", tree.wood_reflectance,
@@ -31,6 +45,9 @@ void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene)
     validate(light);
     require(light.of_kinds.empty() || light.of_kinds.size() == kinds, "number of kinds of trees with optics",
             light.of_kinds.size(), "that of the traced scene, " + std::to_string(kinds));
+    if (light.sun_diameter != bands.front().sun_diameter)
+      throw InvalidInput("diameter of the sun: must be the same in all bands");
+    if (light.sky != bands.front().sky) throw InvalidInput("sky: must be the same in all bands");
     if (light.sun != bands.front().sun) throw InvalidInput("sun: must be the same in all bands");
   }
 }

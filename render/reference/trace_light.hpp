@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/directions.hpp"
 #include "core/leaf_optics.hpp"
 #include "render/reference/ray_scene.hpp"
+#include "sky/sky_map.hpp"
 
 namespace sunfleck {
 
@@ -15,13 +17,17 @@ struct TreeOptics {
   float wood_reflectance = 0.3f;  // Lambertian [1], 0 .. 1
 };
 
-// One band of light and the sun that sends it.
+// One band of light, the sun and the sky that send it and what it meets.
 struct TraceLight {
   Direction sun{0.f, 0.f, -1.f};  // direction of travel; z < 0
   LeafOptics leaf{};
   float wood_reflectance = 0.3f;       // Lambertian [1], 0 .. 1
   float ground_albedo = 0.f;           // Lambertian [1], 0 .. 1
   std::vector<TreeOptics> of_kinds{};  // of each kind of tree; none: all have the optics above
+  float sun_irradiance = 1.f;          // of a plane that faces the sun [1], 0 .. kMostSunIrradiance
+  float sun_diameter = 0.f;  // of its disc, evenly bright [rad]: 0, a point, or kLeastSunDiameter .. kMostSunDiameter
+  std::shared_ptr<const SkyMap> sky{};  // none: black
+  int sky_band = 0;                     // which of the sky's bands this band of light is
 
   TreeOptics ofKind(std::uint32_t kind) const {
     return of_kinds.empty() ? TreeOptics{leaf, wood_reflectance} : of_kinds[kind];
@@ -31,9 +37,13 @@ struct TraceLight {
 // As many bands as one path carries at most.
 inline constexpr std::size_t kMostBands = 16;
 
-// Throws InvalidInput on a value out of its range, a sun that does not shine down or is no unit vector.
+inline constexpr float kMostSunIrradiance = 10.f;
+inline constexpr float kLeastSunDiameter = 0.00436332f, kMostSunDiameter = 1.0471976f;  // 0.25 and 60 degrees
+
+// Throws InvalidInput on a value out of its range, a sun that does not shine down with all of its disc or is no unit
+// vector, and on a band without light.
 void validate(const TraceLight& light);
-// Validates all bands; demands 1 to kMostBands of one sun, with optics of each kind of tree.
+// Validates all bands; demands 1 to kMostBands of one sun and one sky, with optics of each kind of tree.
 void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene);
 
 }  // namespace sunfleck

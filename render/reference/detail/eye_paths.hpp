@@ -7,6 +7,7 @@
 
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
+#include "render/reference/detail/scene_light.hpp"
 #include "render/reference/detail/scene_optics.hpp"
 
 namespace sunfleck::detail {
@@ -16,6 +17,7 @@ namespace sunfleck::detail {
 template <int N>
 struct Seen {
   BandLanes<N> leaf_once, wood_once, ground_once, more;
+  BandLanes<N> light;  // the sky or the sun's disc itself, never scattered
 
   BandLanes<N>& once(Surface surface) {
     if (surface == Surface::none) return ground_once;
@@ -23,15 +25,19 @@ struct Seen {
   }
 };
 
-// (R2) Paths from the eye, with the sun sampled wherever they meet something, before a black sky.
+// (R2) Paths from the eye, with the sun and the sky sampled wherever they meet something (R18).
 template <int N>
 class EyePaths {
  public:
   //   ground  height of the ground about the scene's origin [m]; none if it is black in all bands
-  EyePaths(const RayScene::Geometry& scene, const SceneOptics<N>& optics, Direction sun, float ground)
+  EyePaths(const RayScene::Geometry& scene, const SceneOptics<N>& optics, const SceneLight& light, float ground)
       : scene_(scene),
         optics_(optics),
-        to_sun_(-sun),
+        light_(light),
+        point_sun_(light.pointSun()),
+        wide_(light.wide()),
+        to_sun_(light.toSun()),
+        sun_(light.sunIrradiance<N>()),
         ground_(optics.ground().reflectance.largest() > 0.f ? ground : -kInfinity),
         reach_(0.5f * glm::length(scene.box.size()) + 8.f * scene.lift) {}
 
@@ -52,10 +58,14 @@ class EyePaths {
     }
     scene_.blocked(std::span(lit).first(count), to_sun_, std::span(dark).first(count));
     for (std::size_t i = 0; i < count; ++i) {
-      if (!meets(hits[i], from[i], sight, to_ground[i])) continue;
+      if (!meets(hits[i], from[i], sight, to_ground[i])) {
+        if (wide_) seen[i].light = light_.met<N>(sight, kInfinity);
+        continue;
+      }
       const BandLanes<N> weight = BandLanes<N>::all(1.f);
       if (!dark[i]) addSun(hits[i], weight, seen[i].once(hits[i].surface));
-      goOn(hits[i], weight, random[i], seen[i].more);
+      if (wide_) addDrawn(hits[i], weight, random[i], seen[i].once(hits[i].surface));
+      goOn(hits[i], weight, random[i], seen[i]);
     }
   }
 
@@ -94,16 +104,23 @@ class EyePaths {
   }
 
   // Follows a path on from where it met something and adds what it sees there.
-  void goOn(Hit hit, BandLanes<N> weight, PathRandom& random, BandLanes<N>& seen) const {
+  void goOn(Hit hit, BandLanes<N> weight, PathRandom& random, Seen<N>& seen) const {
+    const Surface first = hit.surface;
     for (int scatterings = 1; scatterings < kMostScatterings; ++scatterings) {
+      const BandLanes<N> arriving = weight;
       const Onward onward = optics_.scatter(hit, weight, random);
       if (onward.fate == Fate::absorbed) return;
+      const float density = wide_ ? optics_.density(hit, arriving, onward.direction) : 0.f;
       const glm::vec3 from = scene_.leave(hit.position, onward.side), direction = onward.direction;
       const float to_ground = toGround(from, direction);
       hit = scene_.closest(from, direction, Coherence::incoherent, to_ground);
-      if (!meets(hit, from, direction, to_ground)) return;
+      if (!meets(hit, from, direction, to_ground)) {
+        if (wide_) addMet(direction, density, weight, scatterings == 1 ? seen.once(first) : seen.more);
+        return;
+      }
       glm::vec3 lit;
-      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, weight, seen);
+      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, weight, seen.more);
+      if (wide_) addDrawn(hit, weight, random, seen.more);
     }
   }
 
@@ -111,21 +128,45 @@ class EyePaths {
   bool sendsSun(const Hit& hit, glm::vec3& lit) const {
     const float cosine = glm::dot(hit.normal, to_sun_);
     const SurfaceOptics<N>& surface = optics_.of(hit);
-    if (cosine == 0.f || (cosine > 0.f ? surface.reflectance : surface.transmittance).largest() == 0.f) return false;
+    if (!point_sun_ || cosine == 0.f || (cosine > 0.f ? surface.reflectance : surface.transmittance).largest() == 0.f)
+      return false;
     lit = scene_.leave(hit.position, cosine > 0.f ? hit.normal : -hit.normal);
     return true;
   }
 
   void addSun(const Hit& hit, const BandLanes<N>& weight, BandLanes<N>& seen) const {
     const BandLanes<N> sent = optics_.sent(hit, to_sun_);
-    for (int band = 0; band < N; ++band) seen[band] += weight[band] * sent[band];
+    for (int band = 0; band < N; ++band) seen[band] += weight[band] * sent[band] * sun_[band];
+  }
+
+  // What a surface sends on of the light drawn from the sky and the sun's disc, by the share that the balance heuristic
+  // leaves to it.
+  void addDrawn(const Hit& hit, const BandLanes<N>& weight, PathRandom& random, BandLanes<N>& seen) const {
+    light_.draw<N>(random, [&](const DrawnLight<N>& drawn) {
+      BandLanes<N> arriving = optics_.sent(hit, drawn.to_light);
+      arriving *= weight;
+      arriving *= drawn.radiance;
+      if (!(arriving.largest() > 0.f)) return;
+      const glm::vec3 side = glm::dot(hit.normal, drawn.to_light) > 0.f ? hit.normal : -hit.normal;
+      if (scene_.blocked(scene_.leave(hit.position, side), drawn.to_light)) return;
+      arriving *= 1.f / (drawn.density + optics_.density(hit, weight, drawn.to_light));
+      for (int band = 0; band < N; ++band) seen[band] += arriving[band];
+    });
+  }
+
+  void addMet(const glm::vec3& direction, float density, const BandLanes<N>& weight, BandLanes<N>& seen) const {
+    const BandLanes<N> met = light_.met<N>(direction, density);
+    for (int band = 0; band < N; ++band) seen[band] += weight[band] * met[band];
   }
 
   const RayScene::Geometry& scene_;
   const SceneOptics<N>& optics_;
+  const SceneLight& light_;
+  bool point_sun_, wide_;  // of the light
   Direction to_sun_;
-  float ground_;  // height, -infinity if there is none [m]
-  float reach_;   // from the box's centre to where rays start [m]
+  BandLanes<N> sun_;  // irradiance of a plane that faces the sun [1]
+  float ground_;      // height, -infinity if there is none [m]
+  float reach_;       // from the box's centre to where rays start [m]
 };
 
 }  // namespace sunfleck::detail

@@ -23,7 +23,10 @@ inline TraceIdentity identityOf(const std::vector<TraceLight>& bands) {
     for (const TreeOptics& tree : light.of_kinds) add(tree);
     optics += fmt::format("ground {}. ", light.ground_albedo);
   }
-  return {{"sun", fmt::format("{} {} {}", sun.x, sun.y, sun.z)}, {"optics", optics}};
+  std::string light = fmt::format("sun's diameter {}, sky {}; irradiance of the sun, band of the sky",
+                                  bands.front().sun_diameter, bands.front().sky ? bands.front().sky->hash() : "none");
+  for (const TraceLight& band : bands) light += fmt::format(" {} {};", band.sun_irradiance, band.sky_band);
+  return {{"light", light}, {"sun", fmt::format("{} {} {}", sun.x, sun.y, sun.z)}, {"optics", optics}};
 }
 
 }  // namespace sunfleck::detail

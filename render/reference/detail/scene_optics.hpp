@@ -46,6 +46,16 @@ class SceneOptics {
     return onward;
   }
 
+  // The density [1/sr] of the direction, a unit vector, in which scatter() sends on a path that arrives with `weight`.
+  // Whoever changes the directions of one changes both, as multiple importance sampling (R18) rests on it.
+  float density(const Hit& hit, const BandLanes<N>& weight, const glm::vec3& direction) const {
+    const float cosine = glm::dot(hit.normal, direction);
+    const SurfaceOptics<N>& surface = of(hit);
+    const float reflected = dot(weight, surface.reflectance), passed = dot(weight, surface.transmittance);
+    const float on_side = cosine > 0.f ? reflected : passed;
+    return on_side > 0.f ? on_side / (reflected + passed) * std::abs(cosine) * std::numbers::inv_pi_v<float> : 0.f;
+  }
+
   // The share of the light from the unit vector `to_light` that is sent back along a line of sight that met `hit`, per
   // solid angle and for irradiance 1 on a plane that faces the light: BRDF or BTDF times the light's cosine [1/sr].
   BandLanes<N> sent(const Hit& hit, const glm::vec3& to_light) const {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "sky/sky_map.hpp"
+
+namespace sunfleck {
+
+struct Scene;
+
+// The sky that a scene asks for; where the sun stands is the scene's.
+struct SceneSky {
+  enum class Kind { none, uniform, overcast, preetham, image };
+  Kind kind = Kind::none;
+  // Of a horizontal plane, relative to that of a plane facing a sun of 1 [1], per band; none: what Preetham's sky
+  // gives. With `own_colours` a sky of colours keeps them, and this is the mean of its bands.
+  std::optional<glm::dvec3> irradiance{};
+  bool own_colours = true;
+  double turbidity = 3.;      // of Preetham's [1]
+  bool coloured_sun = false;  // by Preetham's air, at the same luminance
+  std::string file{};         // of the image
+  std::shared_ptr<const SkyMap> image{};
+  std::size_t negative_values = 0;  // of the image, taken for 0
+};
+
+// The light of a scene, per band.
+struct SunAndSky {
+  glm::vec3 sun{1.f};                   // irradiance of a plane that faces the sun [1]
+  std::shared_ptr<const SkyMap> sky{};  // none where there is none
+};
+// Throws InvalidInput where the sky cannot be as bright as it is to be: an image that is black in a band, or Preetham's
+// under a sun so low that next to nothing of it comes through the air.
+SunAndSky sunAndSky(const Scene& scene);
+
+}  // namespace sunfleck
