@@ -62,7 +62,7 @@ class ForwardPaths {
       if (scatterings == 0) arriveDirect(hit);
       if (hit.surface == Surface::leaf) addTo(layout_.leafSide(hit.leaf, hit.front), weight);
       const BandLanes<N> arriving = weight;
-      Onward onward = optics_.scatter(hit, weight, random);
+      Onward onward = optics_.scatter(hit, direction, weight, random);
       if (scatterings == kMostScatterings) onward.fate = Fate::absorbed;
       const Fate fate = onward.fate;
       if (fate == Fate::absorbed) weight = {};
@@ -128,7 +128,7 @@ struct ForwardJob::Parts {
         bands(std::move(of_bands)),
         paths_per_unit(per_unit),
         faces(scene, bands.front().sun),
-        optics(bands, scene.prototypes.size()),
+        optics(bands, scene),
         layout{.bands = bands.size(), .leaves = scene.leaf_area.size()} {}
 
   const RayScene::Geometry& scene;
@@ -144,7 +144,7 @@ ForwardJob::ForwardJob(const RayScene& scene, std::vector<TraceLight> bands, std
   require(paths_per_unit >= 1 && paths_per_unit <= kMostUnitPaths, "paths per unit", paths_per_unit,
           "from 1 to " + std::to_string(kMostUnitPaths));
   for (const TraceLight& light : bands)
-    require(scene.geometry().period || light.ground_albedo == 0.f, "ground albedo", light.ground_albedo,
+    require(scene.geometry().period || light.largestGroundAlbedo() == 0.f, "ground albedo", light.largestGroundAlbedo(),
             "0 in a forward trace of a stand without period");
   parts_ = std::make_unique<Parts>(scene, std::move(bands), paths_per_unit);
 }

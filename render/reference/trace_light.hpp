@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/directions.hpp"
+#include "core/ground_texture.hpp"
 #include "core/leaf_optics.hpp"
 #include "render/reference/ray_scene.hpp"
+#include "scattering/rpv_ground.hpp"
 
 namespace sunfleck {
 
@@ -22,7 +26,13 @@ struct TraceLight {
   float wood_reflectance = 0.3f;       // Lambertian [1], 0 .. 1
   float ground_albedo = 0.f;           // Lambertian [1], 0 .. 1
   std::vector<TreeOptics> of_kinds{};  // of each kind of tree; none: all have the optics above
+  // Grounds in the place of the albedo, one of them at most, and in all bands or in none.
+  std::optional<RpvGround> ground_rpv{};
+  std::shared_ptr<const GroundTexture> ground_texture{};  // of the stand's x and y; of a periodic stand those of the
+                                                          // period in the middle, which the ground repeats
 
+  // The largest share of light that the ground sends back from any direction [1].
+  float largestGroundAlbedo() const;
   TreeOptics ofKind(std::uint32_t kind) const {
     return of_kinds.empty() ? TreeOptics{leaf, wood_reflectance} : of_kinds[kind];
   }
@@ -34,6 +44,7 @@ inline constexpr std::size_t kMostBands = 16;
 // Throws InvalidInput on a value out of its range, a sun that does not shine down or is no unit vector.
 void validate(const TraceLight& light);
 // Validates all bands; demands 1 to kMostBands of one sun, with optics of each kind of tree.
+// The gloss of a kind must be as rough in all bands.
 void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene);
 
 }  // namespace sunfleck

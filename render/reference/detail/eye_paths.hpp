@@ -54,8 +54,8 @@ class EyePaths {
     for (std::size_t i = 0; i < count; ++i) {
       if (!meets(hits[i], from[i], sight, to_ground[i])) continue;
       const BandLanes<N> weight = BandLanes<N>::all(1.f);
-      if (!dark[i]) addSun(hits[i], weight, seen[i].once(hits[i].surface));
-      goOn(hits[i], weight, random[i], seen[i].more);
+      if (!dark[i]) addSun(hits[i], sight, weight, seen[i].once(hits[i].surface));
+      goOn(hits[i], sight, weight, random[i], seen[i].more);
     }
   }
 
@@ -93,17 +93,18 @@ class EyePaths {
     return true;
   }
 
-  // Follows a path on from where it met something and adds what it sees there.
-  void goOn(Hit hit, BandLanes<N> weight, PathRandom& random, BandLanes<N>& seen) const {
+  // Follows a path on from where it met something, travelling along `direction`, and adds what it sees there.
+  void goOn(Hit hit, glm::vec3 direction, BandLanes<N> weight, PathRandom& random, BandLanes<N>& seen) const {
     for (int scatterings = 1; scatterings < kMostScatterings; ++scatterings) {
-      const Onward onward = optics_.scatter(hit, weight, random);
+      const Onward onward = optics_.scatter(hit, direction, weight, random);
       if (onward.fate == Fate::absorbed) return;
-      const glm::vec3 from = scene_.leave(hit.position, onward.side), direction = onward.direction;
+      const glm::vec3 from = scene_.leave(hit.position, onward.side);
+      direction = onward.direction;
       const float to_ground = toGround(from, direction);
       hit = scene_.closest(from, direction, Coherence::incoherent, to_ground);
       if (!meets(hit, from, direction, to_ground)) return;
       glm::vec3 lit;
-      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, weight, seen);
+      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, direction, weight, seen);
     }
   }
 
@@ -116,8 +117,8 @@ class EyePaths {
     return true;
   }
 
-  void addSun(const Hit& hit, const BandLanes<N>& weight, BandLanes<N>& seen) const {
-    const BandLanes<N> sent = optics_.sent(hit, to_sun_);
+  void addSun(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight, BandLanes<N>& seen) const {
+    const BandLanes<N> sent = optics_.sent(hit, direction, to_sun_);
     for (int band = 0; band < N; ++band) seen[band] += weight[band] * sent[band];
   }
 
