@@ -74,7 +74,7 @@ Scene readScene(const SceneOptions& options) {
                  kind.dropped.leaf_triangles, scene.kinds.size() > 1 ? fmt::format(" of \"{}\"", kind.name) : "");
   if (options.albedo)
     for (TreeKind& kind : scene.kinds)
-      kind.leaf.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
+      for (LeafOptics& leaf : kind.leaf) leaf.reflectance = leaf.transmittance = 0.5f * *options.albedo;
   if (options.sun_zenith_deg) scene.sun_zenith = glm::radians(*options.sun_zenith_deg);
   if (options.sun_azimuth_deg) scene.sun_azimuth = glm::radians(*options.sun_azimuth_deg);
   if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);

@@ -34,6 +34,8 @@ std::optional<double> categoryNoise(const ForwardResult& reference, std::span<co
 
 TraceLight traceLight(const Scene& scene, int band) {
   TraceLight light{.sun = scene.sun(), .ground_albedo = scene.ground_albedo[band]};
+  if (scene.ground_rpv) light.ground_rpv = (*scene.ground_rpv)[static_cast<std::size_t>(band)];
+  light.ground_texture = scene.ground_texture[static_cast<std::size_t>(band)];
   for (const TreeKind& kind : scene.kinds)
     light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
   return light;
