@@ -103,7 +103,7 @@ TEST(R20_GlossyLeaf, ReflectsWhatItsTableSays) {
     for (const double cosine : {0.03, 0.1, 0.3, 0.6, 0.95}) {
       const glm::vec3 eye = towards(std::acos(cosine), 0.8);
       const double reflected =
-          integral([&](const glm::vec3& to) { return double{gloss.brdf(eye, to) * to.z}; }, mirrored(eye), 400);
+          integral([&](const glm::vec3& to) { return double{gloss.brdf(eye, to) * to.z}; }, mirrored(eye), 250);
       EXPECT_NEAR(reflected, double{gloss.albedo(static_cast<float>(cosine))}, kTableError) << m << " " << cosine;
       EXPECT_LE(reflected, 1. + 1e-4) << m << " " << cosine;  // the sum's own error
     }
@@ -187,9 +187,9 @@ TEST(R20_GlossyLeaf, SendsNoMoreThanArrives) {
         const glm::vec3 eye = towards(zenith, 0.5);
         const auto reflected = [&](const glm::vec3& to) { return sent(eye, to); };
         const auto passed = [&](const glm::vec3& to) { return sent(eye, -to); };
-        const double up = integral(reflected, mirrored(eye), 400), down = integral(passed, normal, 400);
+        const double up = integral(reflected, mirrored(eye), 250), down = integral(passed, normal, 250);
         const double beneath = 1. - double{gloss} * double{lobe.albedo(eye.z)};
-        // The sums have errors of their own, of 400 rings: below 1e-3.
+        // The sums have errors of their own, of 250 rings: below 1e-3.
         EXPECT_NEAR(up, double{gloss} * double{lobe.albedo(eye.z)} + 0.4 * beneath, double{gloss} * kTableError + 1e-3)
             << m << " " << gloss << " " << zenith;
         EXPECT_NEAR(down, 0.6 * beneath, 1e-3) << m << " " << gloss << " " << zenith;

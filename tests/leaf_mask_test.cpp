@@ -142,9 +142,8 @@ TEST(LeafMask, MeshesHaveTheAreaThatIsLeft) {
   EXPECT_THROW(finish(wrong, "wrong"), InvalidInput);
 }
 
-// Check rays: masked cards and cards of that shape are the same to the light from the sun, to the leaves' irradiance
-// and to a camera, alone, turned and repeated: the same paths, of which rounding at the shapes' edges may lead few
-// astray, one in a thousand; and lines cross them as often.
+// Check rays: masked cards and cards of that shape are the same to the light from the sun and to the leaves, repeated
+// and turned, within five of the errors of both; to a camera, by the same rays; and lines cross them as often.
 TEST(LeafMask, CardsAreLitAsIfTheyWereCut) {
   const Cards both = cards();
   // The cards' corners that the mask cuts away count in the box, through which the sun comes in: a period makes them
@@ -181,7 +180,7 @@ TEST(LeafMask, CardsAreLitAsIfTheyWereCut) {
                        .height = 40};
   const CameraResult a = traceCamera(masked, light, rays, 0.f, {.paths = 25'600});
   const CameraResult b = traceCamera(cut, light, rays, 0.f, {.paths = 25'600});
-  EXPECT_GT(b.mean.value, 0.01);
+  EXPECT_GT(b.mean.value, 0.005);
   int differing = 0;
   for (std::size_t i = 0; i < a.radiance.values.size(); i += 2)
     differing += std::abs(a.radiance.values[i + 1] - b.radiance.values[i + 1]) > 1e-5f;
@@ -197,7 +196,7 @@ TEST(LeafMask, CardsAreLitAsIfTheyWereCut) {
     EXPECT_EQ(of_cards, of_shapes) << i;
     crossed += of_cards;
   }
-  EXPECT_GT(crossed, 200);
+  EXPECT_GT(crossed, 100);
 }
 
 // Check what an OBJ's material says of its opacity: alpha where it is not 1 all over, else brightness, times d; in
