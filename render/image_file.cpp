@@ -89,11 +89,13 @@ Image readImage(const fs::path& file, ImageValues values) {
   const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": cannot be read: " + why); };
   std::error_code failure;
   if (!fs::is_regular_file(file, failure)) refuse("there is no such file");
-  const auto in = OIIO::ImageInput::open(file.string());
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);  // else colours would come multiplied by alpha
+  const auto in = OIIO::ImageInput::open(file.string(), &as_stored);
   if (!in) refuse(reason(nullptr));
   const OIIO::ImageSpec spec = in->spec();
   if (spec.width < 1 || spec.height < 1 || spec.width > kLargestImage || spec.height > kLargestImage || spec.depth > 1)
-    refuse("it must be a flat image of at most 16384 x 16384 pixels");
+    refuse("it must be a flat image of at most 8192 x 8192 pixels");
   if (spec.nchannels < 1 || spec.nchannels > 4) refuse("it must have one to four channels");
   Image image{.width = spec.width, .height = spec.height, .channels = {}, .values = {}};
   const auto channels = static_cast<std::size_t>(spec.nchannels);

@@ -19,7 +19,7 @@ void requirePictureName(const std::filesystem::path& file);
 // high: the first subimage, rows from the top. Values of whole numbers are 0 .. 1 as they stand; with `linear`, colours
 // but not alpha are taken from sRGB to linear light unless the file holds floating-point numbers. Channels are named
 // "R", "G", "B", "A" or "Y". Throws InvalidInput on what cannot be read or holds a value that is not finite.
-inline constexpr int kLargestImage = 16'384;
+inline constexpr int kLargestImage = 8192;
 enum class ImageValues { as_they_stand, linear };
 Image readImage(const std::filesystem::path& file, ImageValues values);
 

@@ -18,7 +18,12 @@ namespace fs = std::filesystem;
 
 class SceneSurfaces : public testing::Test {
  protected:
-  SceneSurfaces() { fs::create_directory(folder_); }
+  SceneSurfaces() {
+    fs::create_directory(folder_);
+    write("tree.obj",
+          "mtllib tree.mtl\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+          "usemtl leaf\nf 1/1 2/2 3/3 4/4\n");
+  }
   ~SceneSurfaces() override { fs::remove_all(folder_); }
 
   std::string write(const std::string& name, const std::string& text) const {
@@ -43,10 +48,6 @@ class SceneSurfaces : public testing::Test {
   }
 
   fs::path folder_ = fs::temp_directory_path() / ("sunfleck_scene_surfaces_" + std::to_string(::getpid()));
-  const std::string tree_ =
-      write("tree.obj",
-            "mtllib tree.mtl\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-            "usemtl leaf\nf 1/1 2/2 3/3 4/4\n");
 };
 
 }  // namespace
