@@ -326,6 +326,7 @@ class TraceRun {
     for (const TreeKind& kind : scene.kinds)
       if (kind.leaf[band] != traced)
         throw InvalidInput("--other-leaf: must be for scenes whose leaves are all alike in the band");
+    if (traced.gloss > 0.f) throw InvalidInput("--other-leaf: must be for scenes whose leaves have no gloss");
     OrderTable().reweighted(traced, {.reflectance = options.other_leaf[0], .transmittance = options.other_leaf[1]});
     return traced;
   }

@@ -19,6 +19,7 @@
 #include "core/whole_file.hpp"
 #include "grid/density_grid.hpp"
 #include "grid/isolated_read.hpp"
+#include "render/stand_geometry.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -111,6 +112,7 @@ int runVoxelize(const VoxelizeOptions& options, const RunOptions& run) {
       return readIsolated(options.scene.scene, [](double) { return !interrupted(); });
     }
     const Scene scene = readScene(options.scene);
+    requireWholeLeaves(scene, "voxelize");
     requireStandIfNeeded(options, scene);
     const Stand stand = options.stand ? scene.stand : Stand{};
     const std::vector<BandOptics> optics = opticsOf(scene, options.optics);

@@ -77,7 +77,7 @@ Scene readScene(const SceneOptions& options) {
                scene.sky.negative_values);
   if (options.albedo)
     for (TreeKind& kind : scene.kinds)
-      kind.leaf.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
+      for (LeafOptics& leaf : kind.leaf) leaf.reflectance = leaf.transmittance = 0.5f * *options.albedo;
   if (options.sun_zenith_deg) scene.sun_zenith = glm::radians(*options.sun_zenith_deg);
   if (options.sun_azimuth_deg) scene.sun_azimuth = glm::radians(*options.sun_azimuth_deg);
   if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <numeric>
+#include <tuple>
 
 #include "core/require.hpp"
 
@@ -32,6 +34,48 @@ void checkIndices(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles
 
 std::size_t dropFlat(const TreeMesh& mesh, std::vector<glm::uvec3>& triangles) {
   return std::erase_if(triangles, [&](const glm::uvec3& t) { return !(triangleArea(mesh, t) > 0.); });
+}
+
+void checkCuts(const TreeMesh& mesh, const std::string& source) {
+  if (mesh.leaf_cuts.empty()) return;
+  require(mesh.leaf_cuts.size() == mesh.leaf_triangles.size(), source + ": number of masked leaf triangles",
+          mesh.leaf_cuts.size(), "that of the leaf triangles");
+  for (std::size_t i = 0; i < mesh.leaf_cuts.size(); ++i) {
+    const LeafCut& cut = mesh.leaf_cuts[i];
+    if (cut.mask == LeafCut::kWhole) continue;
+    const std::string what = source + ": leaf triangle " + std::to_string(i + 1);
+    require(cut.mask < mesh.masks.size(), what + " mask", cut.mask, "below the number of masks");
+    validate(cut.corners, what);
+  }
+}
+
+// Drops leaf triangles of no area, and those whose mask leaves nothing of them, with their cuts.
+std::size_t dropCutFlat(TreeMesh& mesh, const std::vector<double>& shares) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i) {
+    if (!(triangleArea(mesh, mesh.leaf_triangles[i]) * shares[i] > 0.)) continue;
+    mesh.leaf_triangles[kept] = mesh.leaf_triangles[i];
+    mesh.leaf_cuts[kept++] = mesh.leaf_cuts[i];
+  }
+  const std::size_t dropped = mesh.leaf_triangles.size() - kept;
+  mesh.leaf_triangles.resize(kept);
+  mesh.leaf_cuts.resize(kept);
+  return dropped;
+}
+
+// The share of each leaf triangle that its mask leaves. Most of a tree's cards bear the same part of the image, of
+// which the share is computed once.
+std::vector<double> leafShares(const TreeMesh& mesh) {
+  std::vector<double> shares(mesh.leaf_triangles.size(), 1.);
+  std::map<std::tuple<std::uint32_t, float, float, float, float, float, float>, double> known;
+  for (std::size_t i = 0; i < mesh.leaf_cuts.size(); ++i) {
+    const auto& [mask, c] = mesh.leaf_cuts[i];
+    if (mask == LeafCut::kWhole) continue;
+    const auto [at, is_new] = known.try_emplace({mask, c[0].x, c[0].y, c[1].x, c[1].y, c[2].x, c[2].y}, 0.);
+    if (is_new) at->second = opaqueShare(*mesh.masks[mask], c);
+    shares[i] = at->second;
+  }
+  return shares;
 }
 
 // Union-find over vertices: `root` of two corners of a triangle is the same.
@@ -71,7 +115,9 @@ Dropped finish(TreeMesh& mesh, const std::string& source) {
   checkVertices(mesh, source);
   checkIndices(mesh, mesh.leaf_triangles, source + ": leaf");
   checkIndices(mesh, mesh.wood_triangles, source + ": wood");
-  const Dropped dropped{.leaf_triangles = dropFlat(mesh, mesh.leaf_triangles),
+  checkCuts(mesh, source);
+  const Dropped dropped{.leaf_triangles = mesh.leaf_cuts.empty() ? dropFlat(mesh, mesh.leaf_triangles)
+                                                                 : dropCutFlat(mesh, leafShares(mesh)),
                         .wood_triangles = dropFlat(mesh, mesh.wood_triangles)};
   if (mesh.leaf_triangles.empty())
     throw InvalidInput(source + ": has no leaves (" + std::to_string(dropped.leaf_triangles) +
@@ -90,14 +136,17 @@ double triangleArea(const TreeMesh& mesh, const glm::uvec3& triangle) {
 
 std::vector<double> leafAreas(const TreeMesh& mesh) {
   std::vector<double> areas(mesh.leaf_count, 0.);
+  const std::vector<double> shares = leafShares(mesh);
   for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i)
-    areas[mesh.leaf_of_triangle[i]] += triangleArea(mesh, mesh.leaf_triangles[i]);
+    areas[mesh.leaf_of_triangle[i]] += shares[i] * triangleArea(mesh, mesh.leaf_triangles[i]);
   return areas;
 }
 
 double leafArea(const TreeMesh& mesh) {
   double area = 0.;
-  for (const glm::uvec3& t : mesh.leaf_triangles) area += triangleArea(mesh, t);
+  const std::vector<double> shares = leafShares(mesh);
+  for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i)
+    area += shares[i] * triangleArea(mesh, mesh.leaf_triangles[i]);
   return area;
 }
 

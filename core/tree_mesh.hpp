@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/bounds.hpp"
+#include "core/leaf_mask.hpp"
 
 namespace sunfleck {
 
@@ -18,20 +20,23 @@ struct TreeMesh {
   std::vector<std::uint32_t> leaf_of_triangle;  // the leaf a leaf triangle is part of, 0 .. leaf_count - 1
   std::vector<glm::uvec3> wood_triangles;       // corners, as indices of `vertices`
   std::uint32_t leaf_count = 0;
+  // Of leaves that masks cut out of their triangles; both empty where there are none.
+  std::vector<std::shared_ptr<const LeafMask>> masks;
+  std::vector<LeafCut> leaf_cuts;  // of each leaf triangle
 };
 
 // What `finish` left out.
 struct Dropped {
-  std::size_t leaf_triangles = 0;  // leaf triangles of no area
+  std::size_t leaf_triangles = 0;  // leaf triangles of no area, or cut away
   std::size_t wood_triangles = 0;  // wood triangles of no area
 };
 
 // Makes a mesh safe to use: throws InvalidInput("<source>: ...") on an index out of range, a coordinate that is not
-// finite or beyond 1e4 m, or a mesh without leaves; drops triangles of no area; and tells leaves apart: leaf triangles
-// that share a vertex belong to one leaf.
+// finite or beyond 1e4 m, or a mesh without leaves; drops triangles of no area, also those that masks leave nothing of;
+// and tells leaves apart: leaf triangles that share a vertex belong to one leaf. Masks are checked as well.
 Dropped finish(TreeMesh& mesh, const std::string& source);
 
-double triangleArea(const TreeMesh& mesh, const glm::uvec3& triangle);  // [m^2]
+double triangleArea(const TreeMesh& mesh, const glm::uvec3& triangle);  // whole, whatever a mask cuts away [m^2]
 std::vector<double> leafAreas(const TreeMesh& mesh);                    // one-sided area of each leaf [m^2]
 double leafArea(const TreeMesh& mesh);                                  // one-sided area of all leaves [m^2]
 Bounds leafBounds(const TreeMesh& mesh);                                // box of the leaves

@@ -1,3 +1,4 @@
+#include <array>
 #include <boost/uuid/name_generator_sha1.hpp>
 #include <boost/uuid/nil_generator.hpp>
 #include <boost/uuid/string_generator.hpp>
@@ -16,6 +17,13 @@ std::string meshHash(const TreeMesh& mesh) {
   add(mesh.vertices);
   add(mesh.leaf_triangles);
   add(mesh.wood_triangles);
+  if (!mesh.leaf_cuts.empty()) {
+    add(mesh.leaf_cuts);
+    for (const auto& mask : mesh.masks) {
+      add(std::array{mask->width, mask->height});
+      add(mask->opaque);
+    }
+  }
   return to_string(hash);
 }
 

@@ -39,7 +39,7 @@ void toMetresZUp(std::vector<glm::vec3>& vertices, const ImportRules& rules) {
 
 }  // namespace
 
-ImportedTree importTree(const std::filesystem::path& path, const ImportRules& rules) {
+ImportedTree importTree(const std::filesystem::path& path, const ImportRules& rules, const ImageReader& read_image) {
   detail::validate(rules);
   const std::string source = detail::shown(path.string());
   const std::string extension = extensionOf(path);
@@ -50,7 +50,7 @@ ImportedTree importTree(const std::filesystem::path& path, const ImportRules& ru
   std::string text = detail::readWhole(path);
   ImportedTree tree;
   if (extension == ".obj")
-    tree = detail::readObj(path, std::move(text), rules);
+    tree = detail::readObj(path, std::move(text), rules, read_image);
   else if (extension == ".ply")
     tree = readNameless(text, source, rules);
   else

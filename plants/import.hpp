@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "core/image.hpp"
 #include "core/tree_mesh.hpp"
 
 namespace sunfleck {
@@ -20,6 +22,9 @@ struct ImportRules {
   Up up = Up::z;      // the file's upward axis
 };
 
+// Reads an image file with its values as they stand, 0 .. 1; throws InvalidInput when it cannot.
+using ImageReader = std::function<Image(const std::filesystem::path&)>;
+
 struct ImportedTree {
   TreeMesh mesh;
   Dropped dropped;  // triangles of no area that were left out
@@ -28,10 +33,13 @@ struct ImportedTree {
 
 // Reads a tree from an OBJ or a PLY file, by its extension. Leaf and wood in an OBJ are told apart by the rules; else
 // by the words in its material, group and object names; else by the materials' colours when these are brown and not
-// brown. All of a PLY, which has no names, is leaf. Leaf triangles that share a vertex are one leaf. Throws
-// InvalidInput, with the file and where possible the line, on a file that cannot be read, is empty, has no faces, is
-// broken or truncated, has coordinates that are not finite or beyond 1e4 m, indices out of range, no leaf, or leaf and
-// wood that cannot be told apart.
-ImportedTree importTree(const std::filesystem::path& path, const ImportRules& rules = {});
+// brown. All of a PLY, which has no names, is leaf. Leaf triangles that share a vertex are one leaf. Leaves whose
+// material has an image of its opacity (map_d) are cut out of their faces by it: leaf is where `d` times the image, its
+// alpha channel or else its brightness, is at least a half; without `read_image` such a file is refused. Faces of leaf
+// materials with d below a half are left out. Throws InvalidInput, with the file and where possible the line, on a file
+// that cannot be read, is empty, has no faces, is broken or truncated, has coordinates that are not finite or beyond
+// 1e4 m, indices out of range, no leaf, or leaf and wood that cannot be told apart.
+ImportedTree importTree(const std::filesystem::path& path, const ImportRules& rules = {},
+                        const ImageReader& read_image = {});
 
 }  // namespace sunfleck

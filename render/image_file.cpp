@@ -37,6 +37,11 @@ std::uint8_t sRgbCode(float linear) {
   return static_cast<std::uint8_t>(std::lround(255.f * encoded));
 }
 
+// The other way, from a code value over the largest.
+float linearLight(float encoded) {
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
 // The channels that a screen shows: R, G, B where there are all three, else the first as grey.
 std::vector<std::size_t> shownChannels(const Image& image) {
   std::vector<std::size_t> shown;
@@ -65,7 +70,7 @@ constexpr int kMostWidth = 8192, kMostHeight = 4096;  // of a picture that is re
 
 }  // namespace
 
-Image readImage(const fs::path& file) {
+Image readRadiances(const fs::path& file) {
   const std::string extension = lowered(file.extension().string());
   if (extension != ".exr" && extension != ".hdr")
     throw InvalidInput(file.string() + ": has the extension \"" + file.extension().string() +
@@ -104,6 +109,42 @@ void writeImage(const fs::path& file, const Image& image, float exposure) {
     writeWhole(file, pngBytes(image, exposure));
   else
     writeWhole(file, [&](const fs::path& temporary) { writeExr(file, temporary, image); });
+}
+
+Image readImage(const fs::path& file, ImageValues values) {
+  const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": cannot be read: " + why); };
+  std::error_code failure;
+  if (!fs::is_regular_file(file, failure)) refuse("there is no such file");
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);  // else colours would come multiplied by alpha
+  const auto in = OIIO::ImageInput::open(file.string(), &as_stored);
+  if (!in) refuse(reason(nullptr));
+  const OIIO::ImageSpec spec = in->spec();
+  if (spec.width < 1 || spec.height < 1 || spec.width > kLargestImage || spec.height > kLargestImage || spec.depth > 1)
+    refuse("it must be a flat image of at most 8192 x 8192 pixels");
+  if (spec.nchannels < 1 || spec.nchannels > 4) refuse("it must have one to four channels");
+  Image image{.width = spec.width, .height = spec.height, .channels = {}, .values = {}};
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  const bool has_alpha = spec.alpha_channel >= 0 || channels == 2 || channels == 4;
+  const std::size_t alpha = !has_alpha                ? channels
+                            : spec.alpha_channel >= 0 ? static_cast<std::size_t>(spec.alpha_channel)
+                                                      : channels - 1;
+  const std::size_t colours = channels - (has_alpha ? 1 : 0);
+  for (std::size_t c = 0, colour = 0; c < channels; ++c)
+    image.channels.push_back(c == alpha ? "A" : colours == 3 ? std::string(1, "RGB"[colour++]) : "Y");
+  image.values.resize(image.at(0, image.height, 0));
+  if (!in->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, image.values.data())) {
+    std::string why = in->geterror();
+    why.resize(std::min(why.find('\n'), why.size()));
+    refuse(why);
+  }
+  const bool decode = values == ImageValues::linear && !spec.format.is_floating_point();
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    float& value = image.values[i];
+    if (!std::isfinite(value)) refuse("it holds a value that is not a finite number");
+    if (decode && i % channels != alpha) value = linearLight(value);
+  }
+  return image;
 }
 
 std::string pngBytes(const Image& image, float exposure) {

@@ -16,7 +16,15 @@ void writeImage(const std::filesystem::path& file, const Image& image, float exp
 void requirePictureName(const std::filesystem::path& file);
 
 // Reads linear radiances: an .exr or .hdr picture of at most 8192 x 4096 pixels. Throws InvalidInput on anything else.
-Image readImage(const std::filesystem::path& file);
+Image readRadiances(const std::filesystem::path& file);
+
+// Reads an image by any format that OpenImageIO knows (PNG, TGA, JPEG, EXR ...), at most kLargestImage pixels wide and
+// high: the first subimage, rows from the top. Values of whole numbers are 0 .. 1 as they stand; with `linear`, colours
+// but not alpha are taken from sRGB to linear light unless the file holds floating-point numbers. Channels are named
+// "R", "G", "B", "A" or "Y". Throws InvalidInput on what cannot be read or holds a value that is not finite.
+inline constexpr int kLargestImage = 8192;
+enum class ImageValues { as_they_stand, linear };
+Image readImage(const std::filesystem::path& file, ImageValues values);
 
 // The same PNG as bytes, for embedding in a report.
 std::string pngBytes(const Image& image, float exposure);

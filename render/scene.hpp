@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "core/directions.hpp"
+#include "core/ground_texture.hpp"
 #include "core/leaf_optics.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
 #include "render/scene_sky.hpp"
+#include "scattering/rpv_ground.hpp"
 
 namespace sunfleck {
 
@@ -44,8 +46,10 @@ struct Scene {
   std::string origin;                       // the file or the name it was read from, with which messages begin
   std::vector<TreeKind> kinds{TreeKind{}};  // at least one; of each stands a tree
   Stand stand;
-  glm::vec3 ground_albedo{0.f};   // Lambertian, per band [1], 0 .. 1
-  float sun_zenith = 0.f;         // [rad], 0 .. below pi/2
+  glm::vec3 ground_albedo{0.f};  // Lambertian, per band [1], 0 .. 1; other grounds, per band, in its place:
+  std::optional<std::array<RpvGround, kBands>> ground_rpv;
+  std::array<std::shared_ptr<const GroundTexture>, kBands> ground_texture;  // of all bands, or none
+  float sun_zenith = 0.f;                                                   // [rad], 0 .. below pi/2
   float sun_azimuth = 0.f;        // where the sun stands, from +x towards +y [rad]
   glm::vec3 sun_irradiance{1.f};  // of a plane that faces the sun, per band [1], 0 .. 10
   float sun_diameter = 0.f;       // of its disc, 0: a point [rad]

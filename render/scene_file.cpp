@@ -43,7 +43,8 @@ void growTree(TreeKind& kind, const std::string& species_name, std::uint64_t see
 }
 
 void importFile(TreeKind& kind, const std::filesystem::path& file, const ImportRules& rules) {
-  ImportedTree imported = importTree(file, rules);
+  ImportedTree imported = importTree(
+      file, rules, [](const std::filesystem::path& image) { return readImage(image, ImageValues::as_they_stand); });
   kind.mesh = std::make_shared<const TreeMesh>(std::move(imported.mesh));
   kind.source = fmt::format("{} (leaf and wood: {})", file.string(), imported.how);
   kind.dropped = imported.dropped;
@@ -66,16 +67,23 @@ std::vector<Placement> square(int side, glm::vec2 spacing, std::size_t kinds) {
 // Optics of leaves and wood: those of the table, under these keys, or else those that the kind has already.
 void readOptics(TreeKind& kind, detail::SceneTable& leaf, const std::string& leaf_prefix, detail::SceneTable& wood,
                 const std::string& wood_prefix) {
-  glm::vec3 reflectance, transmittance;
+  glm::vec3 reflectance, transmittance, gloss;
   for (int band = 0; band < kBands; ++band) {
     reflectance[band] = kind.leaf[static_cast<std::size_t>(band)].reflectance;
     transmittance[band] = kind.leaf[static_cast<std::size_t>(band)].transmittance;
+    gloss[band] = kind.leaf[static_cast<std::size_t>(band)].gloss;
   }
   reflectance = leaf.perBand(leaf_prefix + "reflectance", reflectance);
   transmittance = leaf.perBand(leaf_prefix + "transmittance", transmittance);
+  gloss = leaf.perBand(leaf_prefix + "gloss", gloss);
+  const auto roughness = static_cast<float>(
+      leaf.number(leaf_prefix + "gloss_roughness", double{kind.leaf[0].gloss_roughness}, 0.05, 1., "in [0.05, 1]"));
   for (int band = 0; band < kBands; ++band) {
     LeafOptics& optics = kind.leaf[static_cast<std::size_t>(band)];
-    optics = {.reflectance = reflectance[band], .transmittance = transmittance[band]};
+    optics = {.reflectance = reflectance[band],
+              .transmittance = transmittance[band],
+              .gloss = gloss[band],
+              .gloss_roughness = roughness};
     validate(optics);
   }
   kind.wood_reflectance = wood.perBand(wood_prefix + "reflectance", kind.wood_reflectance);
@@ -208,11 +216,56 @@ void readSky(Scene& scene, detail::SceneTable sky, const std::filesystem::path& 
     if (!sky.has("file")) throw InvalidInput(scene.origin + ": [sky] of kind \"image\" has no key file");
     read.file = sky.text("file", "");
     ImageSky image =
-        imageSky(readImage(folder / read.file), double{degrees(sky, "rotation_deg", -360., 360., "in [-360, 360]")});
+        imageSky(readRadiances(folder / read.file), double{degrees(sky, "rotation_deg", -360., 360., "in [-360, 360]")});
     read.negative_values = image.negative_values;
     read.image = std::make_shared<const SkyMap>(std::move(image.sky));
   }
   sky.done();
+}
+
+// The bands of an image: red, green and blue, or its one channel for all.
+std::array<std::shared_ptr<const GroundTexture>, kBands> readTexture(const std::filesystem::path& file, float size) {
+  const Image image = readImage(file, ImageValues::linear);
+  std::array<std::shared_ptr<const GroundTexture>, kBands> bands;
+  for (std::size_t band = 0; band < kBands; ++band) {
+    const auto named = std::find(image.channels.begin(), image.channels.end(), std::string(1, "RGB"[band]));
+    const auto channel = static_cast<std::size_t>(named - image.channels.begin()) % image.channels.size();
+    GroundTexture texture{.width = image.width, .height = image.height, .size = size, .albedo = {}};
+    for (std::size_t i = channel; i < image.values.size(); i += image.channels.size())
+      texture.albedo.push_back(image.values[i]);
+    validate(texture);
+    bands[band] = std::make_shared<const GroundTexture>(std::move(texture));
+  }
+  return bands;
+}
+
+void readGround(Scene& scene, detail::SceneTable ground, const std::filesystem::path& folder) {
+  const std::string kind = ground.text("kind", "lambert");
+  const auto need = [&](const char* key) {
+    if (!ground.has(key))
+      throw InvalidInput(fmt::format("{}: [ground] of kind \"{}\" has no key {}", scene.origin, kind, key));
+  };
+  if (kind == "lambert") {
+    scene.ground_albedo = ground.perBand("albedo", glm::vec3(0.f));
+  } else if (kind == "rpv") {
+    need("rpv");
+    const auto bands = ground.rowPerBand(
+        "rpv", {0., 0.2, -0.9, 0.}, {1., 2., 0.9, 2.},
+        "[rho0, k, theta, rho_c] in [0, 1], [0.2, 2], [-0.9, 0.9] and [0, 2], or three such for red, green and blue");
+    scene.ground_rpv.emplace();
+    for (std::size_t band = 0; band < kBands; ++band) {
+      const auto value = [&](std::size_t i) { return static_cast<float>(bands[band][i]); };
+      (*scene.ground_rpv)[band] = {.rho0 = value(0), .k = value(1), .theta = value(2), .rho_c = value(3)};
+      validate((*scene.ground_rpv)[band]);
+    }
+  } else if (kind == "texture") {
+    need("texture");
+    const auto size = static_cast<float>(ground.number("texture_size", 1., 1e-3, 1e6, "in [1e-3, 1e6] m"));
+    scene.ground_texture = readTexture(folder / ground.text("texture", ""), size);
+  } else {
+    throw InvalidInput(scene.origin + ": ground.kind = \"" + kind + "\": must be lambert, rpv or texture");
+  }
+  ground.done();
 }
 
 Scene readTable(const toml::table& table, const std::filesystem::path& file) {
@@ -225,11 +278,11 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   const auto section = [&](const char* name) { return detail::SceneTable(table.get(name), file.string(), name); };
   Scene scene;
   scene.origin = file.string();
-  detail::SceneTable leaf = section("leaf"), wood = section("wood"), ground = section("ground");
+  detail::SceneTable leaf = section("leaf"), wood = section("wood");
   TreeKind optics = kindWith(kPaperLeaf);
   readOptics(optics, leaf, "", wood, "");
-  scene.ground_albedo = ground.perBand("albedo", glm::vec3(0.f));
-  for (const detail::SceneTable* read : {&leaf, &wood, &ground}) read->done();
+  for (const detail::SceneTable* read : {&leaf, &wood}) read->done();
+  readGround(scene, section("ground"), file.parent_path());
   readTrees(scene, table.get("tree"), optics, file);
   readStand(scene, section("stand"));
   readSun(scene, section("sun"));
@@ -343,11 +396,14 @@ seed = 1
 # file = "tree.obj"           # .obj or .ply beside the scene file, instead of species
 # leaf = "leaf*"              # materials or groups of the file that are leaves ...
 # wood = "bark*"              # ... and those that are wood; told by their names if not given
+                              # A material's map_d (an image of its opacity) cuts the leaves out, for trace alone
 # scale = 1.0                 # metres per unit of the file, above 0
 # up = "z"                    # the file's upward axis: "z" or "y"
 # name = "cherry"             # what positions call it; the species' or the file's name if not given
 # leaf_reflectance = 0.475    # its own optics, if not those of [leaf] and [wood]
 # leaf_transmittance = 0.475
+# leaf_gloss = 0.0
+# leaf_gloss_roughness = 0.3
 # wood_reflectance = 0.3
 # Several kinds of trees: a [[tree]] with these keys for each, instead of [tree]; names must differ, and of each kind
 # stands one tree at least. Trees of a grid take the kinds in turn along x and along y. trace and voxelize --stand take
@@ -365,12 +421,21 @@ kind = "single"               # single | periodic | grid | positions
 [leaf]                        # Lambertian on both sides; reflectance + transmittance at most 1
 reflectance = 0.475           # 0 to 1
 transmittance = 0.475         # 0 to 1
+gloss = 0.0                   # intensity of a glossy reflection on both sides, 0 to 1; the two above are then shares of
+                              # the light it lets in. trace takes it, validate and render do not
+gloss_roughness = 0.3         # root mean square slope of its facets, 0.05 to 1; one number
 
 [wood]
 reflectance = 0.3             # 0 to 1
 
-[ground]
-albedo = 0.0                  # 0 to 1; 0: no ground. trace takes it for periodic stands and pictures
+[ground]                      # trace takes one that reflects for periodic stands and pictures
+kind = "lambert"              # lambert | rpv | texture; the latter two for trace alone
+albedo = 0.0                  # lambert: 0 to 1; 0: no ground
+# rpv = [0.1, 0.8, -0.1, 0.1] # rpv: rho0, k, theta and rho_c of Rahman, Pinty and Verstraete, or three such lists for
+                              # red, green and blue; refused if it would reflect more light than arrives
+# texture = "ground.png"      # texture: an image of the albedo; whole numbers in it are sRGB, others linear; x to the
+                              # right, y up, from x = y = 0; in a periodic stand the period's ground repeats
+# texture_size = 1.0          # texture: metres that its width covers
 
 [sun]
 zenith_deg = 0.0              # 0 overhead, to 89.9

@@ -9,9 +9,25 @@
 
 namespace sunfleck {
 
+void requireWholeLeaves(const Scene& scene, const std::string& what) {
+  for (const TreeKind& kind : scene.kinds)
+    if (!kind.mesh->leaf_cuts.empty())
+      throw InvalidInput((scene.origin.empty() ? "" : scene.origin + ": ") + "\"" + kind.name +
+                         "\" has leaves that masks cut out (map_d): must be whole for " + what +
+                         " (trace alone takes masks)");
+}
+
 void requireModelled(const Scene& scene) {
   const Stand& stand = scene.stand;
   const std::string from = scene.origin.empty() ? "" : scene.origin + ": ";
+  requireWholeLeaves(scene, "the models");
+  for (const TreeKind& kind : scene.kinds)
+    for (const LeafOptics& leaf : kind.leaf)
+      require(leaf.gloss == 0.f, from + "leaf gloss", leaf.gloss,
+              "0 for the models, whose leaves scatter by Lambert's law (trace takes any)");
+  if (scene.ground_rpv || scene.ground_texture[0])
+    throw InvalidInput(from + "ground.kind = " + (scene.ground_rpv ? "\"rpv\"" : "\"texture\"") +
+                       ": must be \"lambert\" for the models (trace takes any)");
   require(scene.kinds.size() == 1, from + "number of kinds of trees", scene.kinds.size(),
           "1 for the models, which know one leaf alone (trace and voxelize --stand take any)");
   require(stand.trees.size() <= kMostTrees, from + "number of trees in [stand]", stand.trees.size(),

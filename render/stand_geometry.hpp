@@ -27,6 +27,8 @@ inline constexpr std::size_t kMostTrees = 1024;
 // since a prototype's maps serve its translated copies only (Eq. 31), with more than kMostTrees trees, or with a period
 // much shorter than the tree is wide.
 void requireModelled(const Scene& scene);
+// Throws InvalidInput where masks cut out the scene's leaves: `what` would take their whole triangles.
+void requireWholeLeaves(const Scene& scene, const std::string& what);
 
 // What leaves and fragments read to be shaded, whatever their optics: the prototype's map along the light, and the
 // cells of each tree with their G-factors. It serves one scene after another and computes only what the next one

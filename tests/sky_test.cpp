@@ -315,7 +315,7 @@ TEST(R18_SkySampler, SamplesFollowTheDensity) {
 TEST(R18_SkySampler, FindsTheBrightPixelsOfAnImage) {
   const fs::path file = fs::path(SUNFLECK_SOURCE_DIR) / ".." / "shared" / "sky" / "park_512_dwab.exr";
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
-  const SkyMap sky = imageSky(readImage(file), 0.).sky;
+  const SkyMap sky = imageSky(readRadiances(file), 0.).sky;
   EXPECT_EQ(sky.rows(), 128);
   EXPECT_EQ(sky.columns(), 512);
   const SkySampler sampler(sky, glm::dvec3(1. / 3.), SkyMeasure::through_z);

@@ -335,7 +335,9 @@ TEST(R18_TraceSky, DrawnAndMetLightHaveOneMean) {
                                        .sky = sky,
                                        .sky_band = 0}};
   const SceneLight light(bands);
-  const SceneOptics<1> optics(bands, 1);
+  const RayScene scene(squareLeaf(kTilted), Stand{}, false);
+  const SceneOptics<1> optics(bands, scene.geometry());
+  const glm::vec3 sight = -kTilted;
   const Hit hit{.surface = Surface::leaf, .normal = kTilted};
   const double to_sun = -double{glm::dot(kTilted, bands.front().sun)};
   ASSERT_GT(to_sun, std::sin(0.15));  // all of the disc is in front
@@ -347,14 +349,14 @@ TEST(R18_TraceSky, DrawnAndMetLightHaveOneMean) {
     PathRandom random(6, i);
     std::array<double, 3> found{};
     light.draw<1>(random, [&](const DrawnLight<1>& drawn) {
-      const double sent = double{optics.sent(hit, drawn.to_light)[0]} * double{drawn.radiance[0]};
+      const double sent = double{optics.sent(hit, sight, drawn.to_light)[0]} * double{drawn.radiance[0]};
       found[0] += sent / double{drawn.density};
-      found[2] += sent / double{drawn.density + optics.density(hit, BandLanes<1>::all(1.f), drawn.to_light)};
+      found[2] += sent / double{drawn.density + optics.density(hit, sight, BandLanes<1>::all(1.f), drawn.to_light)};
     });
     BandLanes<1> weight = BandLanes<1>::all(1.f);
-    const Onward onward = optics.scatter(hit, weight, random);
+    const Onward onward = optics.scatter(hit, sight, weight, random);
     if (onward.fate != Fate::absorbed) {
-      const float density = optics.density(hit, BandLanes<1>::all(1.f), onward.direction);
+      const float density = optics.density(hit, sight, BandLanes<1>::all(1.f), onward.direction);
       found[1] += double{weight[0]} * double{light.met<1>(onward.direction, std::numeric_limits<float>::infinity())[0]};
       found[2] += double{weight[0]} * double{light.met<1>(onward.direction, density)[0]};
     }

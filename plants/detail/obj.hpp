@@ -12,6 +12,7 @@ namespace sunfleck::detail {
 void checkObj(const std::string& text, const std::string& source);
 
 // Reads an OBJ in the file's units and axes. The mesh is not finished.
-ImportedTree readObj(const std::filesystem::path& path, std::string text, const ImportRules& rules);
+ImportedTree readObj(const std::filesystem::path& path, std::string text, const ImportRules& rules,
+                     const ImageReader& read_image);
 
 }  // namespace sunfleck::detail

@@ -42,6 +42,8 @@ std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& 
                                                        .sun_diameter = scene.sun_diameter,
                                                        .sky = shining.sky,
                                                        .sky_band = band});
+    if (scene.ground_rpv) light.ground_rpv = (*scene.ground_rpv)[static_cast<std::size_t>(band)];
+    light.ground_texture = scene.ground_texture[static_cast<std::size_t>(band)];
     for (const TreeKind& kind : scene.kinds)
       light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
   }

@@ -76,6 +76,25 @@ class SceneTable {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
   }
 
+  // A row of `count` numbers for all bands, or one for each; within low and high.
+  std::vector<std::vector<double>> rowPerBand(const std::string& key, const std::vector<double>& low,
+                                              const std::vector<double>& high, const std::string& rule) {
+    const toml::node* node = take(key);
+    if (!node->is_array() || node->as_array()->empty()) refuse(*node, key, rule);
+    const toml::array& rows = *node->as_array();
+    const bool per_band = rows.get(0)->is_array();
+    if (per_band && rows.size() != kBands) refuse(*node, key, rule);
+    std::vector<std::vector<double>> bands;
+    for (std::size_t band = 0; band < kBands; ++band) {
+      const toml::node& row = per_band ? *rows.get(band) : *node;
+      if (!row.is_array() || row.as_array()->size() != low.size()) refuse(row, key, rule);
+      std::vector<double>& values = bands.emplace_back();
+      for (std::size_t i = 0; i < low.size(); ++i)
+        values.push_back(checked(*row.as_array()->get(i), key, low[i], high[i], rule));
+    }
+    return bands;
+  }
+
   // A list of [x, y] or [x, y, rotation_deg], each with or without a kind's name at its end. Trees without take the
   // kinds in turn.
   std::vector<Placement> placements(const std::string& key, const std::vector<TreeKind>& kinds) {

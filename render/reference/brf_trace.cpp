@@ -26,7 +26,7 @@ struct BrfJob::Parts {
         bands(std::move(of_bands)),
         views(std::move(of_views)),
         paths_per_unit(per_unit),
-        optics(bands, scene.prototypes.size()),
+        optics(bands, scene),
         light(bands) {
     for (const ViewDirection& view : views)
       sights.push_back(sunlight(static_cast<float>(view.zenith), static_cast<float>(view.azimuth)));

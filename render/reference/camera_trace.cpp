@@ -69,7 +69,7 @@ struct CameraJob::Parts {
         rays(of_rays),
         ground(ground_height - scene.origin.z),
         samples_per_unit(samples),
-        optics(bands, scene.prototypes.size()),
+        optics(bands, scene),
         light(bands) {
     rays.corner -= scene.origin;
   }
@@ -115,7 +115,8 @@ CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const
           "from 1 to " + std::to_string(kMostSamplesPerUnit));
   require(std::isfinite(ground_height), "ground height", ground_height, "finite");
   const RayScene::Geometry& geometry = scene.geometry();
-  const bool has_ground = std::any_of(bands.begin(), bands.end(), [](const auto& b) { return b.ground_albedo > 0.f; });
+  const bool has_ground =
+      std::any_of(bands.begin(), bands.end(), [](const auto& b) { return b.largestGroundAlbedo() > 0.f; });
   if (geometry.period && has_ground)
     require(ground_height <= geometry.stand_box.low.z, "ground height", ground_height,
             "at most the bottom of a periodic stand, " + std::to_string(geometry.stand_box.low.z));

@@ -85,7 +85,7 @@ class ForwardPaths {
       if (scatterings == 0) arriveDirect(hit, weight);
       if (keepsLeaf(hit)) addTo(layout_.leafSide(hit.leaf, hit.front), weight);
       const BandLanes<N> arriving = weight;
-      Onward onward = optics_.scatter(hit, weight, random);
+      Onward onward = optics_.scatter(hit, direction, weight, random);
       if (scatterings == kMostScatterings) onward.fate = Fate::absorbed;
       const Fate fate = onward.fate;
       if (fate == Fate::absorbed) weight = {};
@@ -158,7 +158,7 @@ struct ForwardJob::Parts {
         bands(std::move(of_bands)),
         paths_per_unit(per_unit),
         light(scene, bands),
-        optics(bands, scene.prototypes.size()),
+        optics(bands, scene),
         cells(detail.cells),
         layout{.bands = bands.size(),
                .leaves = detail.leaves ? scene.leaf_area.size() : 0,
@@ -180,7 +180,7 @@ ForwardJob::ForwardJob(const RayScene& scene, std::vector<TraceLight> bands, std
   require(paths_per_unit >= 1 && paths_per_unit <= kMostUnitPaths, "paths per unit", paths_per_unit,
           "from 1 to " + std::to_string(kMostUnitPaths));
   for (const TraceLight& light : bands)
-    require(scene.geometry().period || light.ground_albedo == 0.f, "ground albedo", light.ground_albedo,
+    require(scene.geometry().period || light.largestGroundAlbedo() == 0.f, "ground albedo", light.largestGroundAlbedo(),
             "0 in a forward trace of a stand without period");
   parts_ = std::make_unique<Parts>(scene, std::move(bands), paths_per_unit, std::move(detail));
 }

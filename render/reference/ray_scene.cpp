@@ -22,8 +22,21 @@ void keepFirstError(void* text, RTCError code, const char* message) {
   if (error.empty()) error = "Embree error " + std::to_string(code) + ": " + (message ? message : "");
 }
 
+// Takes back hits where a mask cuts the leaf away: the ray goes on.
+void passCutLeaves(const RTCFilterFunctionNArguments* arguments) {
+  const auto& cuts = *static_cast<const CutLeaves*>(arguments->geometryUserPtr);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const LeafCut& cut = cuts.of_triangle[RTCHitN_primID(arguments->hit, arguments->N, i)];
+    if (cut.mask == LeafCut::kWhole) continue;
+    const float u = RTCHitN_u(arguments->hit, arguments->N, i), v = RTCHitN_v(arguments->hit, arguments->N, i);
+    if (!cuts.masks[cut.mask]->at(cut.corners, u, v)) arguments->valid[i] = 0;
+  }
+}
+
+// `cuts`: none where the triangles are whole.
 void attachTriangles(RTCDevice device, RTCScene scene, unsigned number, const std::vector<glm::vec3>& vertices,
-                     const std::vector<glm::uvec3>& triangles, const glm::vec3& pivot) {
+                     const std::vector<glm::uvec3>& triangles, const glm::vec3& pivot, CutLeaves* cuts = nullptr) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
                                          vertices.size());
@@ -33,6 +46,11 @@ void attachTriangles(RTCDevice device, RTCScene scene, unsigned number, const st
     std::transform(vertices.begin(), vertices.end(), static_cast<glm::vec3*>(points),
                    [&](const glm::vec3& vertex) { return vertex - pivot; });
     std::memcpy(corners, triangles.data(), triangles.size() * sizeof(glm::uvec3));
+    if (cuts) {
+      rtcSetGeometryUserData(geometry, cuts);
+      rtcSetGeometryIntersectFilterFunction(geometry, passCutLeaves);
+      rtcSetGeometryOccludedFilterFunction(geometry, passCutLeaves);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, number);
   }
@@ -139,7 +157,9 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
     EmbreeScene& scene = made.emplace_back(rtcNewScene(device.get()));
     Prototype& prototype = prototypes.emplace_back();
     const glm::vec3& pivot = placed.pivots[kind];
-    attachTriangles(device.get(), scene.get(), kLeaves, mesh.vertices, mesh.leaf_triangles, pivot);
+    if (!mesh.leaf_cuts.empty()) prototype.cuts.reset(new CutLeaves{mesh.masks, mesh.leaf_cuts});
+    attachTriangles(device.get(), scene.get(), kLeaves, mesh.vertices, mesh.leaf_triangles, pivot,
+                    prototype.cuts.get());
     for (const glm::uvec3& t : mesh.leaf_triangles) prototype.planes.push_back(planeOf(mesh, t, pivot));
     if (with_wood && !mesh.wood_triangles.empty()) {
       attachTriangles(device.get(), scene.get(), kWood, mesh.vertices, mesh.wood_triangles, pivot);

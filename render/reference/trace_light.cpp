@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
+#include <tuple>
 
 #include "core/require.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
@@ -35,6 +36,15 @@ void validate(const TraceLight& light) {
   validateTree({light.leaf, light.wood_reflectance});
   for (const TreeOptics& tree : light.of_kinds) validateTree(tree);
   require(light.ground_albedo >= 0.f && light.ground_albedo <= 1.f, "ground albedo", light.ground_albedo, "in [0, 1]");
+  if (light.ground_rpv) validate(*light.ground_rpv);
+  if (light.ground_texture) validate(*light.ground_texture);
+  if (light.ground_rpv && light.ground_texture) throw InvalidInput("ground: must be rpv or a texture, not both");
+}
+
+float TraceLight::largestGroundAlbedo() const {
+  if (ground_rpv) return static_cast<float>(largestRpvAlbedo(*ground_rpv));
+  if (ground_texture) return *std::max_element(ground_texture->albedo.begin(), ground_texture->albedo.end());
+  return ground_albedo;
 }
 
 void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene) {
@@ -49,6 +59,16 @@ void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene)
       throw InvalidInput("diameter of the sun: must be the same in all bands");
     if (light.sky != bands.front().sky) throw InvalidInput("sky: must be the same in all bands");
     if (light.sun != bands.front().sun) throw InvalidInput("sun: must be the same in all bands");
+    const TraceLight& first = bands.front();
+    const auto shape = [](const TraceLight& of) {
+      const GroundTexture* const texture = of.ground_texture.get();
+      return texture ? std::tuple(texture->width, texture->height, texture->size) : std::tuple(0, 0, 0.f);
+    };
+    if (light.ground_rpv.has_value() != first.ground_rpv.has_value() || shape(light) != shape(first))
+      throw InvalidInput("ground: must be of the same kind in all bands, a texture of the same size");
+    for (std::uint32_t kind = 0; kind < kinds; ++kind)
+      require(light.ofKind(kind).leaf.gloss_roughness == first.ofKind(kind).leaf.gloss_roughness,
+              "leaf gloss_roughness", light.ofKind(kind).leaf.gloss_roughness, "the same in all bands");
   }
 }
 

@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/directions.hpp"
+#include "core/ground_texture.hpp"
 #include "core/leaf_optics.hpp"
 #include "render/reference/ray_scene.hpp"
+#include "scattering/rpv_ground.hpp"
 #include "sky/sky_map.hpp"
 
 namespace sunfleck {
@@ -28,7 +31,13 @@ struct TraceLight {
   float sun_diameter = 0.f;  // of its disc, evenly bright [rad]: 0, a point, or kLeastSunDiameter .. kMostSunDiameter
   std::shared_ptr<const SkyMap> sky{};  // none: black
   int sky_band = 0;                     // which of the sky's bands this band of light is
+  // Grounds in the place of the albedo, one of them at most, and in all bands or in none.
+  std::optional<RpvGround> ground_rpv{};
+  std::shared_ptr<const GroundTexture> ground_texture{};  // of the stand's x and y; of a periodic stand those of the
+                                                          // period in the middle, which the ground repeats
 
+  // The largest share of light that the ground sends back from any direction [1].
+  float largestGroundAlbedo() const;
   TreeOptics ofKind(std::uint32_t kind) const {
     return of_kinds.empty() ? TreeOptics{leaf, wood_reflectance} : of_kinds[kind];
   }
@@ -43,7 +52,8 @@ inline constexpr float kLeastSunDiameter = 0.00436332f, kMostSunDiameter = 1.047
 // Throws InvalidInput on a value out of its range, a sun that does not shine down with all of its disc or is no unit
 // vector, and on a band without light.
 void validate(const TraceLight& light);
-// Validates all bands; demands 1 to kMostBands of one sun and one sky, with optics of each kind of tree.
+// Validates all bands; demands 1 to kMostBands of one sun and one sky, with optics of each kind of tree; the gloss of a
+// kind must be as rough in all bands.
 void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene);
 
 }  // namespace sunfleck

@@ -63,9 +63,9 @@ class EyePaths {
         continue;
       }
       const BandLanes<N> weight = BandLanes<N>::all(1.f);
-      if (!dark[i]) addSun(hits[i], weight, seen[i].once(hits[i].surface));
-      if (wide_) addDrawn(hits[i], weight, random[i], seen[i].once(hits[i].surface));
-      goOn(hits[i], weight, random[i], seen[i]);
+      if (!dark[i]) addSun(hits[i], sight, weight, seen[i].once(hits[i].surface));
+      if (wide_) addDrawn(hits[i], sight, weight, random[i], seen[i].once(hits[i].surface));
+      goOn(hits[i], sight, weight, random[i], seen[i]);
     }
   }
 
@@ -103,15 +103,16 @@ class EyePaths {
     return true;
   }
 
-  // Follows a path on from where it met something and adds what it sees there.
-  void goOn(Hit hit, BandLanes<N> weight, PathRandom& random, Seen<N>& seen) const {
+  // Follows a path on from where it met something, travelling along `direction`, and adds what it sees there.
+  void goOn(Hit hit, glm::vec3 direction, BandLanes<N> weight, PathRandom& random, Seen<N>& seen) const {
     const Surface first = hit.surface;
     for (int scatterings = 1; scatterings < kMostScatterings; ++scatterings) {
       const BandLanes<N> arriving = weight;
-      const Onward onward = optics_.scatter(hit, weight, random);
+      const Onward onward = optics_.scatter(hit, direction, weight, random);
       if (onward.fate == Fate::absorbed) return;
-      const float density = wide_ ? optics_.density(hit, arriving, onward.direction) : 0.f;
-      const glm::vec3 from = scene_.leave(hit.position, onward.side), direction = onward.direction;
+      const float density = wide_ ? optics_.density(hit, direction, arriving, onward.direction) : 0.f;
+      const glm::vec3 from = scene_.leave(hit.position, onward.side);
+      direction = onward.direction;
       const float to_ground = toGround(from, direction);
       hit = scene_.closest(from, direction, Coherence::incoherent, to_ground);
       if (!meets(hit, from, direction, to_ground)) {
@@ -119,8 +120,8 @@ class EyePaths {
         return;
       }
       glm::vec3 lit;
-      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, weight, seen.more);
-      if (wide_) addDrawn(hit, weight, random, seen.more);
+      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, direction, weight, seen.more);
+      if (wide_) addDrawn(hit, direction, weight, random, seen.more);
     }
   }
 
@@ -134,22 +135,23 @@ class EyePaths {
     return true;
   }
 
-  void addSun(const Hit& hit, const BandLanes<N>& weight, BandLanes<N>& seen) const {
-    const BandLanes<N> sent = optics_.sent(hit, to_sun_);
+  void addSun(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight, BandLanes<N>& seen) const {
+    const BandLanes<N> sent = optics_.sent(hit, direction, to_sun_);
     for (int band = 0; band < N; ++band) seen[band] += weight[band] * sent[band] * sun_[band];
   }
 
-  // What a surface sends on of the light drawn from the sky and the sun's disc, by the share that the balance heuristic
-  // leaves to it.
-  void addDrawn(const Hit& hit, const BandLanes<N>& weight, PathRandom& random, BandLanes<N>& seen) const {
+  // What a surface, met along `direction`, sends on of the light drawn from the sky and the sun's disc, by the share
+  // that the balance heuristic leaves to it.
+  void addDrawn(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight, PathRandom& random,
+                BandLanes<N>& seen) const {
     light_.draw<N>(random, [&](const DrawnLight<N>& drawn) {
-      BandLanes<N> arriving = optics_.sent(hit, drawn.to_light);
+      BandLanes<N> arriving = optics_.sent(hit, direction, drawn.to_light);
       arriving *= weight;
       arriving *= drawn.radiance;
       if (!(arriving.largest() > 0.f)) return;
       const glm::vec3 side = glm::dot(hit.normal, drawn.to_light) > 0.f ? hit.normal : -hit.normal;
       if (scene_.blocked(scene_.leave(hit.position, side), drawn.to_light)) return;
-      arriving *= 1.f / (drawn.density + optics_.density(hit, weight, drawn.to_light));
+      arriving *= 1.f / (drawn.density + optics_.density(hit, direction, weight, drawn.to_light));
       for (int band = 0; band < N; ++band) seen[band] += arriving[band];
     });
   }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,6 +12,14 @@
 #include "render/reference/trace_light.hpp"
 
 namespace sunfleck::detail {
+
+// Fowler, Noll and Vo's hash (1a, 64 bits) of the numbers' bytes.
+inline std::uint64_t hashOf(const std::vector<float>& values) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const std::byte byte : std::as_bytes(std::span(values)))
+    hash = (hash ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3u;
+  return hash;
+}
 
 // The light and the optics of a run, every digit of them.
 inline TraceIdentity identityOf(const std::vector<TraceLight>& bands) {
@@ -18,10 +29,19 @@ inline TraceIdentity identityOf(const std::vector<TraceLight>& bands) {
     const auto add = [&](const TreeOptics& tree) {
       optics +=
           fmt::format("leaf {} {} wood {}; ", tree.leaf.reflectance, tree.leaf.transmittance, tree.wood_reflectance);
+      if (tree.leaf.gloss > 0.f) optics += fmt::format("gloss {} {}; ", tree.leaf.gloss, tree.leaf.gloss_roughness);
     };
     if (light.of_kinds.empty()) add({light.leaf, light.wood_reflectance});
     for (const TreeOptics& tree : light.of_kinds) add(tree);
-    optics += fmt::format("ground {}. ", light.ground_albedo);
+    if (light.ground_rpv)
+      optics += fmt::format("ground rpv {} {} {} {}. ", light.ground_rpv->rho0, light.ground_rpv->k,
+                            light.ground_rpv->theta, light.ground_rpv->rho_c);
+    else if (light.ground_texture)
+      optics +=
+          fmt::format("ground texture {} x {} every {}, {:016x}. ", light.ground_texture->width,
+                      light.ground_texture->height, light.ground_texture->size, hashOf(light.ground_texture->albedo));
+    else
+      optics += fmt::format("ground {}. ", light.ground_albedo);
   }
   std::string light = fmt::format("sun's diameter {}, sky {}; irradiance of the sun, band of the sky",
                                   bands.front().sun_diameter, bands.front().sky ? bands.front().sky->hash() : "none");

@@ -29,6 +29,17 @@ struct Onward {
   glm::vec3 direction{0.f};  // unit
 };
 
+// Whether a path goes on; a light one does so by chance, and then weighs kRouletteWeight in its brightest band.
+template <int N>
+bool survives(BandLanes<N>& weight, PathRandom& random) {
+  const float largest = weight.largest();
+  if (largest < kRouletteWeight) {
+    if (random.uniform() * kRouletteWeight >= largest) return false;
+    weight *= kRouletteWeight / largest;
+  }
+  return true;
+}
+
 // What becomes of a path that arrives with `weight`: which side it leaves by is drawn for all bands at once, by what
 // they send there together, and the weights make up for it; a light path goes on by chance. Unbiased in every band. Of
 // an absorbed path the weight means nothing.
@@ -40,11 +51,7 @@ Fate scatter(const SurfaceOptics<N>& optics, BandLanes<N>& weight, PathRandom& r
   const bool passes = random.uniform() * scattered >= reflected;
   weight *= passes ? optics.transmittance : optics.reflectance;
   weight *= scattered / (passes ? passed : reflected);
-  const float largest = weight.largest();
-  if (largest < kRouletteWeight) {
-    if (random.uniform() * kRouletteWeight >= largest) return Fate::absorbed;
-    weight *= kRouletteWeight / largest;
-  }
+  if (!survives(weight, random)) return Fate::absorbed;
   return passes ? Fate::passed : Fate::reflected;
 }
 

@@ -48,10 +48,17 @@ struct Scenes {
   RTCScene root() const { return instances ? instances.get() : prototypes.front().get(); }
 };
 
+// What Embree's filter asks whether a leaf triangle is cut away where a ray meets it.
+struct CutLeaves {
+  std::vector<std::shared_ptr<const LeafMask>> masks;
+  std::vector<LeafCut> of_triangle;
+};
+
 // What a hit on a kind of tree is looked up in.
 struct Prototype {
   std::vector<glm::vec4> planes;                // per triangle, leaves first: unit normal n, and n . x on it [m]
   std::vector<std::uint32_t> leaf_of_triangle;  // among the leaves of all kinds
+  std::unique_ptr<CutLeaves> cuts;              // where masks cut leaves out
 };
 
 // A ray that would pass more periods than this without meeting anything is taken to leave the layer of leaves by the

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <variant>
 #include <vector>
 
 #include "render/reference/detail/cosine_law.hpp"
+#include "render/reference/detail/glossy_leaf.hpp"
+#include "render/reference/detail/ground_surface.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/trace_light.hpp"
@@ -17,10 +21,13 @@ namespace sunfleck::detail {
 template <int N>
 class SceneOptics {
  public:
-  SceneOptics(const std::vector<TraceLight>& bands, std::size_t kinds) : of_kinds_(kinds) {
+  // `scene` must outlive it.
+  SceneOptics(const std::vector<TraceLight>& bands, const RayScene::Geometry& scene)
+      : of_kinds_(scene.prototypes.size()), ground_beyond_lambert_(GroundSurface<N>::of(bands, scene)) {
+    const std::size_t kinds = of_kinds_.size();
     for (std::size_t b = 0; b < bands.size(); ++b) {
       const int band = static_cast<int>(b);
-      ground_.reflectance[band] = bands[b].ground_albedo;
+      ground_.reflectance[band] = bands[b].largestGroundAlbedo();
       for (std::size_t kind = 0; kind < kinds; ++kind) {
         const TreeOptics tree = bands[b].ofKind(static_cast<std::uint32_t>(kind));
         of_kinds_[kind].leaf.reflectance[band] = tree.leaf.reflectance;
@@ -28,17 +35,31 @@ class SceneOptics {
         of_kinds_[kind].wood.reflectance[band] = tree.wood_reflectance;
       }
     }
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+      const auto number = static_cast<std::uint32_t>(kind);
+      if (std::none_of(bands.begin(), bands.end(), [&](const auto& b) { return b.ofKind(number).leaf.gloss > 0.f; }))
+        continue;
+      of_kinds_[kind].glossy.emplace(bands, number);
+      of_kinds_[kind].leaf = of_kinds_[kind].glossy->bounds();
+    }
+    lambert_ = !ground_beyond_lambert_ &&
+               std::none_of(of_kinds_.begin(), of_kinds_.end(), [](const Kind& k) { return k.glossy.has_value(); });
   }
 
-  // Of what was hit, nothing being the ground.
+  // Of what was hit, nothing being the ground. Of glossy leaves and of ground not alike everywhere or in all directions
+  // it is a bound: where it is 0, nothing is sent.
   const SurfaceOptics<N>& of(const Hit& hit) const {
     if (hit.surface == Surface::none) return ground_;
     return hit.surface == Surface::leaf ? of_kinds_[hit.kind].leaf : of_kinds_[hit.kind].wood;
   }
   const SurfaceOptics<N>& ground() const { return ground_; }
 
-  // What becomes of a path that met `hit`: where it goes on to, and with what weight.
-  Onward scatter(const Hit& hit, BandLanes<N>& weight, PathRandom& random) const {
+  // What becomes of a path that met `hit`, travelling along `arriving`: where it goes on to, and with what weight.
+  Onward scatter(const Hit& hit, const glm::vec3& arriving, BandLanes<N>& weight, PathRandom& random) const {
+    if (!lambert_) [[unlikely]] {
+      if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->scatter(hit.normal, arriving, weight, random);
+      if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->scatter(hit, arriving, weight, random);
+    }
     Onward onward{.fate = detail::scatter(of(hit), weight, random)};
     if (onward.fate == Fate::absorbed) return onward;
     onward.side = onward.fate == Fate::passed ? -hit.normal : hit.normal;
@@ -46,37 +67,59 @@ class SceneOptics {
     return onward;
   }
 
-  // The density [1/sr] of the direction, a unit vector, in which scatter() sends on a path that arrives with `weight`.
-  // Whoever changes the directions of one changes both, as multiple importance sampling (R18) rests on it.
-  float density(const Hit& hit, const BandLanes<N>& weight, const glm::vec3& direction) const {
-    const float cosine = glm::dot(hit.normal, direction);
-    const SurfaceOptics<N>& surface = of(hit);
-    const float reflected = dot(weight, surface.reflectance), passed = dot(weight, surface.transmittance);
-    const float on_side = cosine > 0.f ? reflected : passed;
-    return on_side > 0.f ? on_side / (reflected + passed) * std::abs(cosine) * std::numbers::inv_pi_v<float> : 0.f;
-  }
-
-  // The share of the light from the unit vector `to_light` that is sent back along a line of sight that met `hit`, per
-  // solid angle and for irradiance 1 on a plane that faces the light: BRDF or BTDF times the light's cosine [1/sr].
-  BandLanes<N> sent(const Hit& hit, const glm::vec3& to_light) const {
+  // The share of the light from the unit vector `to_light` that is sent back along a line of sight that met `hit`,
+  // running along `arriving`, per solid angle and for irradiance 1 on a plane that faces the light: BRDF or BTDF times
+  // the light's cosine [1/sr].
+  BandLanes<N> sent(const Hit& hit, const glm::vec3& arriving, const glm::vec3& to_light) const {
+    if (!lambert_) [[unlikely]] {
+      if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->sent(hit.normal, arriving, to_light);
+      if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->sent(hit, arriving, to_light);
+    }
     const float cosine = glm::dot(hit.normal, to_light);
     BandLanes<N> share = cosine > 0.f ? of(hit).reflectance : of(hit).transmittance;
     share *= std::abs(cosine) * std::numbers::inv_pi_v<float>;
     return share;
   }
 
+  // Density of the directions that `scatter` draws for a path that arrives with this weight [1/sr]. Whoever changes the
+  // directions of one changes both, as multiple importance sampling (R18) rests on it.
+  float density(const Hit& hit, const glm::vec3& arriving, const BandLanes<N>& weight,
+                const glm::vec3& direction) const {
+    if (!lambert_) [[unlikely]] {
+      if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->density(hit.normal, arriving, weight, direction);
+      if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->density(direction);
+    }
+    const float reflected = dot(weight, of(hit).reflectance), passed = dot(weight, of(hit).transmittance);
+    if (!(reflected + passed > 0.f)) return 0.f;
+    const float cosine = glm::dot(hit.normal, direction);
+    return (cosine > 0.f ? reflected : passed) / (reflected + passed) * std::abs(cosine) *
+           std::numbers::inv_pi_v<float>;
+  }
+
  private:
   struct Kind {
-    SurfaceOptics<N> leaf, wood;
+    SurfaceOptics<N> leaf, wood;  // leaf: a bound where it is glossy
+    std::optional<GlossyLeaf<N>> glossy;
   };
+  const GlossyLeaf<N>* glossyAt(const Hit& hit) const {
+    if (hit.surface != Surface::leaf) return nullptr;
+    const std::optional<GlossyLeaf<N>>& glossy = of_kinds_[hit.kind].glossy;
+    return glossy ? &*glossy : nullptr;
+  }
+  bool isGroundBeyondLambert(const Hit& hit) const {
+    return hit.surface == Surface::none && ground_beyond_lambert_.has_value();
+  }
+
   std::vector<Kind> of_kinds_;
   SurfaceOptics<N> ground_;
+  std::optional<GroundSurface<N>> ground_beyond_lambert_;
+  bool lambert_ = true;  // whether all scatter by Lambert's law, everywhere alike
 };
 
 // The same for any number of bands, in as many lanes as it needs.
 class AnyLanes {
  public:
-  AnyLanes(const std::vector<TraceLight>& bands, std::size_t kinds) : optics_(make(bands, kinds)) {}
+  AnyLanes(const std::vector<TraceLight>& bands, const RayScene::Geometry& scene) : optics_(make(bands, scene)) {}
 
   template <typename Body>
   void visit(const Body& body) const {
@@ -85,11 +128,11 @@ class AnyLanes {
 
  private:
   using Optics = std::variant<SceneOptics<1>, SceneOptics<4>, SceneOptics<8>, SceneOptics<16>>;
-  static Optics make(const std::vector<TraceLight>& bands, std::size_t kinds) {
-    if (bands.size() == 1) return SceneOptics<1>(bands, kinds);
-    if (bands.size() <= 4) return SceneOptics<4>(bands, kinds);
-    if (bands.size() <= 8) return SceneOptics<8>(bands, kinds);
-    return SceneOptics<16>(bands, kinds);
+  static Optics make(const std::vector<TraceLight>& bands, const RayScene::Geometry& scene) {
+    if (bands.size() == 1) return SceneOptics<1>(bands, scene);
+    if (bands.size() <= 4) return SceneOptics<4>(bands, scene);
+    if (bands.size() <= 8) return SceneOptics<8>(bands, scene);
+    return SceneOptics<16>(bands, scene);
   }
   Optics optics_;
 };
