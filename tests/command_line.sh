@@ -320,6 +320,43 @@ refuses "--time" trace leaf.obj --time 5y
 refuses "must be at most 1" trace leaf.obj --other-leaf 0.1 0.95
 refuses "excludes" trace leaf.obj --all-bands --band 1
 does "target_reached\": true" trace leaf.obj --period 2 2 --target 5% --json
+"$program" trace leaf.obj --period 2 2 --paths 64 --target 0.01% --json 2>early.txt | grep -q 'target_reached": false' &&
+  grep -q "not reached" early.txt || fail "--target: reached what it was not given the paths for: $(cat early.txt)"
+
+# Cells: a flat leaf of 1 x 1 m that absorbs all is four cells of a quarter each.
+does "wrote cells.csv" trace leaf.obj --paths 65536 --albedo 0 --cells cells.csv --cell 0.5
+[ "$(head -1 cells.csv)" = "x_m,y_m,z_m,volume_m3,leaves,leaves_standard_error,leaves_per_m,wood,wood_standard_error,wood_per_m" ] &&
+  [ "$(grep -c "^0\.[27]5,0\.[27]5,1\.25,0\.125,0\.25,0,2,0,0,0$" cells.csv)" -eq 4 ] || fail "--cells: $(cat cells.csv)"
+does "wrote cells.vdb" trace leaf.obj --paths 1000 --all-bands --cells cells.vdb --cell 0.5
+vdb_print -l cells.vdb | grep -q "Name: absorbed_leaves_blue_error" || fail "--cells: $(vdb_print -l cells.vdb)"
+does "wrote cells.trace" trace leaf.obj --paths 1000 --cells cells.csv --checkpoint cells.trace
+refuses "made with side of the cells = 0.25: must be 0.5" trace leaf.obj --paths 1000 --cells x.csv --cell 0.5 --checkpoint cells.trace
+refuses ".csv or .vdb" trace leaf.obj --cells x.txt
+refuses "number of cells" trace leaf.obj --cells x.csv --cell 1e-5
+refuses "--cell" trace leaf.obj --cells x.csv --cell 0
+refuses "--cells" trace leaf.obj --cell 1
+
+# Spectra: of more bands than one path carries, over one another; a flat leaf that fills its period reflects its share.
+printf 'name,leaf_reflectance,leaf_transmittance\n' >spectrum.csv
+for band in $(seq 10 30); do echo "${band}0,0.$band,0.5"; done >>spectrum.csv
+does "wrote found.csv" trace leaf.obj --period 1 1 --paths 1000 --spectrum spectrum.csv --spectrum-out found.csv
+[ "$(wc -l <found.csv)" -eq 22 ] && awk -F, 'NR > 1 && ($2 - $1 / 1000) ^ 2 > 25 * $3 ^ 2 { exit 1 }' found.csv || fail "--spectrum-out: $(cat found.csv)"
+does '"name": "300"' trace leaf.obj --period 1 1 --paths 1000 --spectrum spectrum.csv --json
+printf 'name,leaf_reflectance,leaf_transmittance\na,0.1,0.2\nb,1.5,0\n' >bright.csv
+printf 'name,leaf_reflectance,leaf_transmittance\na,0.6,0.5\n' >sum.csv
+printf 'name,leaf_reflectance,leaf_transmittance,wood_reflectance\na,0.6,0.3,x\n' >letter.csv
+printf 'name,leaf_reflectance,leaf_transmittance\na,0.6,0.3\na,0.1,0.1\n' >twice.csv
+printf 'name,leaf_reflectance,leaf_transmittance\n' >no_band.csv
+printf 'wavelength,r,t\n1,2,3\n' >header.csv
+refuses "bright.csv:3: leaf_reflectance: 1.5: must be in [0, 1]" trace leaf.obj --spectrum bright.csv
+refuses "sum.csv:2: leaf_transmittance" trace leaf.obj --spectrum sum.csv
+refuses 'letter.csv:2: wood_reflectance: "x": must be a number' trace leaf.obj --spectrum letter.csv
+refuses "twice.csv:3: name" trace leaf.obj --spectrum twice.csv
+refuses "no_band.csv: must have at least one band" trace leaf.obj --spectrum no_band.csv
+refuses "header.csv:1" trace leaf.obj --spectrum header.csv
+refuses "missing.csv" trace leaf.obj --spectrum missing.csv
+refuses "excludes" trace leaf.obj --spectrum spectrum.csv --all-bands
+refuses "--spectrum" trace leaf.obj --spectrum-out x.csv
 
 # Reflectance factors: of a flat leaf of reflectance 1/2 that fills its period, 1/2 in all directions.
 does "hemisphere" trace leaf.obj --period 1 1 --paths 1000 --brf -60:60:30 --brf-paths 1000 --sun-zenith 30 --albedo 1 \

@@ -46,7 +46,7 @@ inline std::pair<std::uint32_t, std::uint32_t> scrambledSobol(std::uint32_t inde
     x = (x ^ x >> 15) * 0x846ca68bu;
     return x ^ x >> 16;
   };
-  const std::uint32_t shuffled = reversedBits(owenScrambled(reversedBits(index), seed(0)));
+  const std::uint32_t shuffled = owenScrambled(index, seed(0));
   return {owenScrambled(reversedBits(shuffled), seed(1)), owenScrambled(secondSobol(shuffled), seed(2))};
 }
 
