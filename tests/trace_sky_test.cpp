@@ -335,7 +335,7 @@ TEST(R18_TraceSky, DrawnAndMetLightHaveOneMean) {
                                        .sky = sky,
                                        .sky_band = 0}};
   const SceneLight light(bands);
-  const RayScene scene(squareLeaf(kTilted), Stand{}, false);
+  const RayScene scene(tiltedLeaf(0.5f), Stand{}, false);
   const SceneOptics<1> optics(bands, scene.geometry());
   const glm::vec3 sight = -kTilted;
   const Hit hit{.surface = Surface::leaf, .normal = kTilted};
