@@ -26,7 +26,7 @@ struct BrfJob::Parts {
         bands(std::move(of_bands)),
         views(std::move(of_views)),
         paths_per_unit(per_unit),
-        optics(bands, scene.prototypes.size()) {
+        optics(bands, scene) {
     for (const ViewDirection& view : views)
       sights.push_back(sunlight(static_cast<float>(view.zenith), static_cast<float>(view.azimuth)));
   }
@@ -84,7 +84,7 @@ std::uint64_t BrfJob::unitsOf(std::uint64_t paths) const {
 }
 
 TraceIdentity BrfJob::identity() const {
-  TraceIdentity identity = identityOf(parts_->bands);
+  TraceIdentity identity = identityOf(parts_->bands, parts_->scene);
   std::string views;
   for (const ViewDirection& view : parts_->views) views += fmt::format("{} {}; ", view.zenith, view.azimuth);
   identity["views"] = views;

@@ -20,8 +20,8 @@ namespace {
 struct Layout {
   std::size_t bands, leaves;
 
-  enum Total { reflected, absorbed_leaves, absorbed_wood, absorbed_ground, arriving_ground };
-  static constexpr std::size_t kTotals = 5;
+  enum Total { reflected, absorbed_leaves, absorbed_wood, absorbed_ground, absorbed_particles, arriving_ground };
+  static constexpr std::size_t kTotals = 6;
   std::size_t total(Total which, int band) const { return which * bands + index(band); }
   // Direct light is the same in all bands.
   std::size_t direct() const { return kTotals * bands; }
@@ -54,7 +54,7 @@ class ForwardPaths {
     BandLanes<N> weight = BandLanes<N>::all(1.f);
     int reflections = 0, passes = 0;
     for (int scatterings = 0;; ++scatterings) {
-      Hit hit = scene_.closest(from, direction, Coherence::incoherent);
+      Hit hit = scene_.meet(from, direction, random);
       const bool none = hit.surface == Surface::none;
       if (none) leave(direction.z >= 0.f ? Layout::upward : Layout::downward, weight, reflections, passes);
       if (none && direction.z >= 0.f) return;
@@ -68,17 +68,20 @@ class ForwardPaths {
       if (fate == Fate::absorbed) weight = {};
       keep(layout_.total(absorbedBy(hit.surface), 0), arriving, weight);
       if (fate == Fate::absorbed) return;
-      if (hit.surface == Surface::leaf) ++(fate == Fate::passed ? passes : reflections);
+      if (isLeaf(hit.surface)) ++(fate == Fate::passed ? passes : reflections);
       from = scene_.leave(hit.position, onward.side);
       direction = onward.direction;
     }
   }
 
  private:
+  static bool isLeaf(Surface surface) { return surface == Surface::leaf || surface == Surface::turbid_leaf; }
+
   // What a surface keeps is what the path has lost there, so that no path makes or loses light.
   static typename Layout::Total absorbedBy(Surface surface) {
     if (surface == Surface::none) return Layout::absorbed_ground;
-    return surface == Surface::leaf ? Layout::absorbed_leaves : Layout::absorbed_wood;
+    if (isLeaf(surface)) return Layout::absorbed_leaves;
+    return surface == Surface::wood ? Layout::absorbed_wood : Layout::absorbed_particles;
   }
 
   void leave(typename Layout::Leaving how, const BandLanes<N>& weight, int reflections, int passes) {
@@ -128,7 +131,7 @@ struct ForwardJob::Parts {
         bands(std::move(of_bands)),
         paths_per_unit(per_unit),
         faces(scene, bands.front().sun),
-        optics(bands, scene.prototypes.size()),
+        optics(bands, scene),
         layout{.bands = bands.size(), .leaves = scene.leaf_area.size()} {}
 
   const RayScene::Geometry& scene;
@@ -156,7 +159,7 @@ std::size_t ForwardJob::bins() const {
 }
 
 TraceIdentity ForwardJob::identity() const {
-  TraceIdentity identity = identityOf(parts_->bands);
+  TraceIdentity identity = identityOf(parts_->bands, parts_->scene);
   identity["paths per unit"] = std::to_string(parts_->paths_per_unit);
   return identity;
 }
@@ -183,6 +186,7 @@ std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
     r.reflected = total(Layout::reflected);
     r.absorbed_leaves = total(Layout::absorbed_leaves);
     r.absorbed_wood = total(Layout::absorbed_wood);
+    if (parts_->scene.hasParticles()) r.absorbed_particles = total(Layout::absorbed_particles);
     r.arriving_ground = total(Layout::arriving_ground);
     r.arriving_ground_direct = sums.estimate(layout.direct());
     r.absorbed_ground = total(Layout::absorbed_ground);

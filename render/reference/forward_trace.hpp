@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/progress.hpp"
@@ -18,12 +19,13 @@ namespace sunfleck {
 // periodic stand is entered through the horizontal top of one period; a stand without period through the sunlit faces
 // of the box of its trees, the top and, unless the sun is overhead, the sides. Light that leaves downward arrives at
 // the ground, wherever it leaves the box; light that leaves upward is reflected. So reflected + absorbed_leaves +
-// absorbed_wood + absorbed_ground = 1.
+// absorbed_wood + absorbed_particles + absorbed_ground = 1.
 struct ForwardResult {
   Estimate reflected;
-  Estimate absorbed_leaves, absorbed_wood;
-  Estimate arriving_ground;         // every arrival counted, also after reflection by the ground itself
-  Estimate arriving_ground_direct;  // of these, the light that met nothing before
+  Estimate absorbed_leaves, absorbed_wood;     // turbid leaves of media are leaves
+  std::optional<Estimate> absorbed_particles;  // where a medium has particles
+  Estimate arriving_ground;                    // every arrival counted, also after reflection by the ground itself
+  Estimate arriving_ground_direct;             // of these, the light that met nothing before
   Estimate absorbed_ground;
   OrderTable reflected_by_order, arriving_ground_by_order;  // by scatterings by leaves
   // Of each leaf of the prototypes, kind after kind: irradiance per one-sided area, for sun irradiance 1 on a plane
@@ -39,7 +41,7 @@ struct ForwardResult {
 };
 
 // (R1) Monte Carlo from the sun to the leaves, all bands on one path. Leaves scatter by Lambert's law on both sides,
-// wood and ground on one. The ground lies at the bottom of the box.
+// wood and ground on one, media by (R14). The ground lies at the bottom of the box.
 class ForwardJob final : public TraceJob {
  public:
   //   scene  must outlive the job

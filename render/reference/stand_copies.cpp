@@ -62,17 +62,22 @@ Shifts shifts(float low, float high, float cell_low, float period) {
 
 }  // namespace
 
-StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood) {
+StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood,
+                        const Bounds& others) {
   validate(kinds.size(), stand);
   std::vector<Copy> rotations;
   std::vector<Bounds> boxes;  // of each tree, where it stands
-  Bounds whole;
+  Bounds whole = others;
   for (const Placement& tree : stand.trees) {
     rotations.push_back(rotation(tree));
     const Bounds box = rotatedBox(*kinds[tree.kind], rotations.back(), with_wood);
     boxes.push_back({.low = box.low + tree.position, .high = box.high + tree.position});
     whole.include(boxes.back());
   }
+
+  require(whole.low.z <= whole.high.z, "number of leaves and pieces of wood", 0, "at least 1: nothing is to be met");
+  for (int axis = 0; axis < 2; ++axis)
+    if (whole.low[axis] > whole.high[axis]) whole.low[axis] = whole.high[axis] = 0.f;
 
   StandCopies result;
   // A single upright copy is traced as the mesh stands, without an instance: so its own origin is the best one.
@@ -88,7 +93,7 @@ StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& sta
   for (std::size_t i = 0; i < stand.trees.size(); ++i) {
     Copy copy = rotations[i];
     const glm::vec3 home = stand.trees[i].position - result.origin;
-    if (!stand.period) {
+    if (!stand.period || boxes[i].empty()) {
       copy.translation = home;
       result.copies.push_back(copy);
       continue;

@@ -20,6 +20,7 @@ void validate(const TraceLight& light) {
   };
   validateTree({light.leaf, light.wood_reflectance});
   for (const TreeOptics& tree : light.of_kinds) validateTree(tree);
+  for (const LeafOptics& medium : light.of_media) validate(medium);
   require(light.ground_albedo >= 0.f && light.ground_albedo <= 1.f, "ground albedo", light.ground_albedo, "in [0, 1]");
 }
 
@@ -31,6 +32,8 @@ void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene)
     validate(light);
     require(light.of_kinds.empty() || light.of_kinds.size() == kinds, "number of kinds of trees with optics",
             light.of_kinds.size(), "that of the traced scene, " + std::to_string(kinds));
+    require(light.of_media.size() == scene.geometry().media.size(), "number of media with optics",
+            light.of_media.size(), "that of the traced scene, " + std::to_string(scene.geometry().media.size()));
     if (light.sun != bands.front().sun) throw InvalidInput("sun: must be the same in all bands");
   }
 }

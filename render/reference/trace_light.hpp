@@ -22,6 +22,8 @@ struct TraceLight {
   float wood_reflectance = 0.3f;       // Lambertian [1], 0 .. 1
   float ground_albedo = 0.f;           // Lambertian [1], 0 .. 1
   std::vector<TreeOptics> of_kinds{};  // of each kind of tree; none: all have the optics above
+  // Of each medium of the scene: its leaves' reflectance and transmittance; of particles their sum, the albedo, counts.
+  std::vector<LeafOptics> of_media{};
 
   TreeOptics ofKind(std::uint32_t kind) const {
     return of_kinds.empty() ? TreeOptics{leaf, wood_reflectance} : of_kinds[kind];
@@ -33,7 +35,7 @@ inline constexpr std::size_t kMostBands = 16;
 
 // Throws InvalidInput on a value out of its range, a sun that does not shine down or is no unit vector.
 void validate(const TraceLight& light);
-// Validates all bands; demands 1 to kMostBands of one sun, with optics of each kind of tree.
+// Validates all bands; demands 1 to kMostBands of one sun, with optics of each kind of tree and of each medium.
 void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene);
 
 }  // namespace sunfleck

@@ -15,11 +15,11 @@ namespace sunfleck::detail {
 // seen and by how often its light has been scattered.
 template <int N>
 struct Seen {
-  BandLanes<N> leaf_once, wood_once, ground_once, more;
+  BandLanes<N> leaf_once, wood_once, ground_once, more;  // what media hold counts as leaves
 
   BandLanes<N>& once(Surface surface) {
     if (surface == Surface::none) return ground_once;
-    return surface == Surface::leaf ? leaf_once : wood_once;
+    return surface == Surface::wood ? wood_once : leaf_once;
   }
 };
 
@@ -45,7 +45,10 @@ class EyePaths {
     std::array<glm::vec3, kPacket> lit;  // where light from the sun would come in
     std::array<bool, kPacket> dark;
     for (std::size_t i = 0; i < count; ++i) to_ground[i] = toGround(from[i], sight);
-    scene_.closest(from, sight, std::span(to_ground).first(count), std::span(hits).first(count));
+    if (scene_.media.empty())
+      scene_.closest(from, sight, std::span(to_ground).first(count), std::span(hits).first(count));
+    else
+      lookIntoMedia(from, sight, random, to_ground, hits);
     for (std::size_t i = 0; i < count; ++i) {
       seen[i] = {};
       dark[i] = !meets(hits[i], from[i], sight, to_ground[i]) || !sendsSun(hits[i], lit[i]);
@@ -54,7 +57,7 @@ class EyePaths {
     for (std::size_t i = 0; i < count; ++i) {
       if (!meets(hits[i], from[i], sight, to_ground[i])) continue;
       const BandLanes<N> weight = BandLanes<N>::all(1.f);
-      if (!dark[i]) addSun(hits[i], weight, seen[i].once(hits[i].surface));
+      if (!dark[i]) addSun(hits[i], lit[i], weight, seen[i].once(hits[i].surface));
       goOn(hits[i], weight, random[i], seen[i].more);
     }
   }
@@ -76,6 +79,21 @@ class EyePaths {
 
  private:
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+  // What is met first along parallel lines of sight where there are media.
+  void lookIntoMedia(std::span<const glm::vec3> from, const Direction& sight, std::span<PathRandom> random,
+                     std::span<const float> to_ground, std::span<Hit> hits) const {
+    std::array<RayScene::Geometry::Flight, RayScene::Geometry::kPacket> flights;
+    std::array<float, RayScene::Geometry::kPacket> reach;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      flights[i] = scene_.fly(from[i], sight, random[i]);
+      reach[i] = std::min(to_ground[i], flights[i].distance);
+    }
+    scene_.closest(from, sight, std::span(reach).first(from.size()), hits.first(from.size()));
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (hits[i].surface == Surface::none && flights[i].distance < to_ground[i])
+        hits[i] = scene_.collide(flights[i], from[i], sight, random[i]);
+  }
 
   // Distance to the ground along a ray, infinite if it meets none.
   float toGround(const glm::vec3& from, const glm::vec3& direction) const {
@@ -100,10 +118,10 @@ class EyePaths {
       if (onward.fate == Fate::absorbed) return;
       const glm::vec3 from = scene_.leave(hit.position, onward.side), direction = onward.direction;
       const float to_ground = toGround(from, direction);
-      hit = scene_.closest(from, direction, Coherence::incoherent, to_ground);
+      hit = scene_.meet(from, direction, random, to_ground);
       if (!meets(hit, from, direction, to_ground)) return;
       glm::vec3 lit;
-      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, weight, seen);
+      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, lit, weight, seen);
     }
   }
 
@@ -116,8 +134,9 @@ class EyePaths {
     return true;
   }
 
-  void addSun(const Hit& hit, const BandLanes<N>& weight, BandLanes<N>& seen) const {
-    const BandLanes<N> sent = optics_.sent(hit, to_sun_);
+  void addSun(const Hit& hit, const glm::vec3& lit, const BandLanes<N>& weight, BandLanes<N>& seen) const {
+    BandLanes<N> sent = optics_.sent(hit, to_sun_);
+    if (!scene_.media.empty()) sent *= scene_.transmittance(lit, to_sun_);
     for (int band = 0; band < N; ++band) seen[band] += weight[band] * sent[band];
   }
 

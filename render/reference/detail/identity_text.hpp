@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/trace_job.hpp"
 #include "render/reference/trace_light.hpp"
 
@@ -24,6 +25,17 @@ inline TraceIdentity identityOf(const std::vector<TraceLight>& bands) {
     optics += fmt::format("ground {}. ", light.ground_albedo);
   }
   return {{"sun", fmt::format("{} {} {}", sun.x, sun.y, sun.z)}, {"optics", optics}};
+}
+
+// The same in a scene, with what is in its media.
+inline TraceIdentity identityOf(const std::vector<TraceLight>& bands, const RayScene::Geometry& scene) {
+  TraceIdentity identity = identityOf(bands);
+  if (scene.media.empty()) return identity;
+  identity["media"] = scene.media_hash;
+  for (const TraceLight& light : bands)
+    for (const LeafOptics& medium : light.of_media)
+      identity["optics of media"] += fmt::format("{} {}; ", medium.reflectance, medium.transmittance);
+  return identity;
 }
 
 }  // namespace sunfleck::detail
