@@ -23,6 +23,7 @@
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "grid/density_grid.hpp"
+#include "render/compare/scene_media.hpp"
 #include "render/compare/validation.hpp"
 #include "render/image_file.hpp"
 #include "render/reference/brf_trace.hpp"
@@ -51,6 +52,7 @@ struct TraceOptions {
   bool all_bands = false, without_wood = false, only_picture = false;
   std::string leaves, picture;
   std::vector<float> other_leaf;  // reflectance, transmittance
+  std::optional<float> turbid;    // side of a cell [m]
   std::string checkpoint, target, time, part, compare;
   double write_every = 60.;  // [s]
 };
@@ -115,7 +117,7 @@ class TraceRun {
         run_(run),
         scene_(scene),
         extent_(extentOf(options)),
-        rays_(meshes(scene), scene.stand, !options.without_wood) {
+        rays_(meshes(scene), scene.stand, !options.without_wood, traceMedia(scene)) {
     if (!options.other_leaf.empty()) traced_leaf_ = leafOfAll(scene, options);
     for (int band = 0; band < kBands; ++band)
       if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
@@ -281,6 +283,10 @@ class TraceRun {
     for (const TreeKind& kind : scene.kinds)
       if (kind.leaf[band] != traced)
         throw InvalidInput("--other-leaf: must be for scenes whose leaves are all alike in the band");
+    for (const SceneMedium& medium : scene.media)
+      if (medium.particles || medium.optics[band] != traced)
+        throw InvalidInput(
+            "--other-leaf: must be for scenes whose leaves are all alike in the band, without particles");
     OrderTable().reweighted(traced, {.reflectance = options.other_leaf[0], .transmittance = options.other_leaf[1]});
     return traced;
   }
@@ -327,14 +333,25 @@ class TraceRun {
 };
 
 // The figures that a run tells.
-std::vector<std::string> figureNames(const TraceOptions& options, const std::vector<BrfView>& views) {
+std::vector<std::string> figureNames(const TraceOptions& options, const Scene& scene,
+                                     const std::vector<BrfView>& views) {
   std::vector<std::string> names;
+  ForwardResult told;
+  if (std::any_of(scene.media.begin(), scene.media.end(), [](const SceneMedium& medium) { return medium.particles; }))
+    told.absorbed_particles = Estimate();
   if (!options.only_picture && !options.brf.only)
-    for (const NamedEstimate& figure : figuresOf(ForwardResult())) names.push_back(figure.name);
+    for (const NamedEstimate& figure : figuresOf(told)) names.push_back(figure.name);
   for (const BrfView& view : views) names.push_back(view.name);
   if (!views.empty()) names.push_back("brf_albedo");
   if (names.empty()) throw InvalidInput("--compare: must be without --only-picture");
   return names;
+}
+
+Scene turbidScene(const TraceOptions& options, const RunOptions& run, const Scene& scene) {
+  if (scene.kinds[0].mesh->leaf_count == 0) throw InvalidInput("--turbid: must be for a scene with trees");
+  Scene made = turbid(scene, *options.turbid, terminalProgress("voxelizing", run.quiet));
+  made.name = fmt::format("{}, turbid in cells of {:.6g} m", scene.name, *options.turbid);
+  return made;
 }
 
 int runTrace(const TraceOptions& options, const RunOptions& run) {
@@ -343,11 +360,12 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (!options.leaves.empty()) requireNamed(options.leaves, ".csv");
   if (!options.picture.empty()) requirePictureName(options.picture);
   if (!options.checkpoint.empty()) requireNamed(options.checkpoint, ".trace");
-  Scene scene = readScene(options.scene);
+  Scene scene = readScene(options.scene, Media::taken);
+  if (options.turbid) scene = turbidScene(options, run, scene);
   apply(options.camera, scene);
   const std::vector<BrfView> views = brfViews(options.brf, scene);
   std::vector<NamedEstimate> reference;
-  if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, views));
+  if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, scene, views));
   TraceRun trace(options, run, scene);
   if (!options.only_picture && !options.brf.only) trace.light();
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
@@ -419,6 +437,12 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
       ->add_option("--part", trace->part, "Compute the K-th of N equal parts, K/N, for sunfleck merge to put together")
       ->needs("--checkpoint")
       ->excludes(target);
+  command
+      ->add_option("--turbid", trace->turbid,
+                   "Trace the leaves of the trees as a turbid medium: their density and orientation in cells of this "
+                   "side, in metres. Wood stays")
+      ->check(numberIn(2e-5, 1e6, "in [2e-5, 1e6] m"))
+      ->excludes("--leaves");
   command->add_flag("--without-wood", trace->without_wood, "Leave the wood out");
   command->callback([trace, &options, &status] { status = runTrace(*trace, options); });
 }

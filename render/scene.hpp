@@ -12,6 +12,7 @@
 #include "core/leaf_optics.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
+#include "render/scene_medium.hpp"
 
 namespace sunfleck {
 
@@ -43,10 +44,11 @@ struct Scene {
   std::string origin;                       // the file or the name it was read from, with which messages begin
   std::vector<TreeKind> kinds{TreeKind{}};  // at least one; of each stands a tree
   Stand stand;
-  glm::vec3 ground_albedo{0.f};  // Lambertian, per band [1], 0 .. 1
-  float sun_zenith = 0.f;        // [rad], 0 .. below pi/2
-  float sun_azimuth = 0.f;       // where the sun stands, from +x towards +y [rad]
-  std::optional<Camera> camera;  // none: one that shows the whole stand
+  std::vector<SceneMedium> media;  // of these, trace alone knows; trees may then be without leaves or without anything
+  glm::vec3 ground_albedo{0.f};    // Lambertian, per band [1], 0 .. 1
+  float sun_zenith = 0.f;          // [rad], 0 .. below pi/2
+  float sun_azimuth = 0.f;         // where the sun stands, from +x towards +y [rad]
+  std::optional<Camera> camera;    // none: one that shows the whole stand
 
   Direction sun() const { return sunlight(sun_zenith, sun_azimuth); }
   const TreeKind& kindOf(const Placement& tree) const { return kinds[tree.kind]; }
@@ -59,7 +61,7 @@ std::string sourceOf(const Scene& scene);
 // all its trees stand together.
 void intoOnePeriod(Stand& stand);
 
-Bounds bounds(const Scene& scene);    // of all trees of the stand [m]
+Bounds bounds(const Scene& scene);    // of all trees of the stand and of its media [m]
 Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
 // The camera moved and widened so that the whole stand fills its picture; direction and pixels stay.
 Camera showingAll(const Scene& scene, Camera camera);

@@ -183,7 +183,7 @@ TEST(R16_MediumTrace, MeetsPublishedSlabs) {
         std::stod(fields[5]);
   }
   ASSERT_GT(slabs.size(), 100u);
-  int number = 0;
+  int number = 0, compared = 0;
   for (const auto& [slab, known] : slabs) {
     if (++number % 12 != 0 || !known.contains("R") || !known.contains("T") || slab.thickness > 30.) continue;
     TraceMedium medium = layer(Scatterer::particles, static_cast<float>(slab.thickness));
@@ -192,9 +192,15 @@ TEST(R16_MediumTrace, MeetsPublishedSlabs) {
     const TraceLight light = lightOn({{static_cast<float>(slab.albedo), 0.f}}, std::acos(slab.mu0));
     const ForwardResult found = traceForward(scene, light, {.paths = 6'400});
     // The albedo of single precision is off by 3e-8, some hundreds of scatterings make that 1e-5 of the light.
-    EXPECT_TRUE(agrees(found.reflected, known.at("R"), 0., 1e-5)) << number;
-    EXPECT_TRUE(agrees(found.arriving_ground, known.at("T"), 0., 1e-5)) << number;
+    // Shares that some hundred paths alone would tell are not spread as a z-test has it.
+    for (const auto& [share, value] :
+         {std::pair{found.reflected, known.at("R")}, {found.arriving_ground, known.at("T")}}) {
+      if (value < 0.02) continue;
+      EXPECT_TRUE(agrees(share, value, 0., 1e-5)) << number;
+      ++compared;
+    }
   }
+  EXPECT_GT(compared, 15);
 }
 
 // Check the energy budget of a turbid canopy of leaf area index 3 over soil, where another program's is at hand.
@@ -353,39 +359,40 @@ TEST(R15_MediumTrace, PictureOfABoxIsSingleScattering) {
   EXPECT_NEAR(sum, expected, 5. * std::sqrt(squares) + 1e-5 * expected);
 }
 
-// Check that leaves ever smaller become the turbid medium. In a layer of leaf area index 2 the reflected light exceeds
-// that of turbid leaves by the hot spot's share and others, in proportion to the leaves' size: what radii r and r / 2
-// tell extrapolates to the turbid value, to the standard errors of both and the scatter of the draws of leaves, which
-// is taken from three draws each.
+// Check that leaves ever smaller become the turbid medium. A layer of leaf area index 2 of square leaves reflects more
+// than turbid leaves, by the hot spot's share and others, in proportion to their side: what sides a and a / 2 tell
+// extrapolates to the turbid value. Its error is from the scatter of twelve draws of leaves and paths; 7.5 standard
+// errors of twelve are a false alarm of 1.2e-5. The deviation itself is told: it is some 2 %, and there.
 TEST(R15_MediumTrace, TinyLeavesBecomeTurbid) {
   const LeafOptics leaf{.reflectance = 0.5f, .transmittance = 0.4f};
-  const auto layerOf = [](double radius, std::uint64_t seed) {
+  const auto reflected = [&](float side, std::uint64_t seed) {
     Random random(seed, 0);
     TreeMesh mesh;
-    const int leaves = static_cast<int>(std::lround(2. / (kPi * radius * radius)));
-    for (int i = 0; i < leaves; ++i)
-      addPolygon(mesh, mesh.leaf_triangles,
-                 disc({random.uniform(), random.uniform(), random.uniform()}, onSphere(random), radius));
+    for (int i = 0; i < static_cast<int>(2.f / (side * side)); ++i) {
+      const glm::vec3 centre(random.uniform(), random.uniform(), random.uniform());
+      const Axes axes = axesAlong(onSphere(random));
+      addPolygon(mesh, mesh.leaf_triangles, rectangle(centre, 0.5f * side * axes.right, 0.5f * side * axes.up));
+    }
     finish(mesh, "layer");
-    return mesh;
-  };
-  const auto reflected = [&](double radius, std::uint64_t seed) {
-    const RayScene scene(layerOf(radius, seed), {.period = glm::vec2(1.f)}, false);
     TraceLight light = lightOn({}, 0.5);
     light.leaf = leaf;
-    return traceForward(scene, light, {.paths = 60'000, .seed = seed}).reflected;
+    const RayScene scene(mesh, {.period = glm::vec2(1.f)}, false);
+    return traceForward(scene, light, {.paths = 12'800, .seed = seed}).reflected.value;
   };
-  std::vector<double> limits;
-  for (std::uint64_t draw = 1; draw <= 4; ++draw)
-    limits.push_back(2. * reflected(0.02, 10 + draw).value - reflected(0.04, 20 + draw).value);
-  double mean = 0., squares = 0.;
-  for (const double limit : limits) mean += limit / 4.;
-  for (const double limit : limits) squares += (limit - mean) * (limit - mean) / 3.;
+  constexpr int draws = 12;
+  double mean = 0., squares = 0., coarse = 0.;
+  for (std::uint64_t draw = 1; draw <= draws; ++draw) {
+    const double large = reflected(0.1f, 100 + draw), limit = 2. * reflected(0.05f, 200 + draw) - large;
+    mean += limit / draws;
+    squares += limit * limit / draws;
+    coarse += large / draws;
+  }
+  const double error = std::sqrt((squares - mean * mean) / (draws - 1));
   const ForwardResult turbid =
-      traceForward(RayScene({layer(Scatterer::leaves, 2.f)}, glm::vec2(1.f)), lightOn({leaf}, 0.5), {.paths = 60'000});
-  EXPECT_NEAR(mean, turbid.reflected.value, 1.);
-  std::cout << mean << " +- " << std::sqrt(squares / 4.) << " " << turbid.reflected.value << " "
-            << reflected(0.04, 50).value << " " << reflected(0.02, 50).value << "\n";
+      traceForward(RayScene({layer(Scatterer::leaves, 2.f)}, glm::vec2(1.f)), lightOn({leaf}, 0.5), {.paths = 100'000});
+  EXPECT_NEAR(mean, turbid.reflected.value, 7.5 * error);
+  EXPECT_LT(error, 0.01);
+  std::cout << mean << " +- " << error << " " << turbid.reflected.value << " " << coarse << "\n";
 }
 
 // Check that the bits do not depend on the number of threads, that what is in a medium tells runs apart, and that light

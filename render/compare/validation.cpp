@@ -36,6 +36,7 @@ TraceLight traceLight(const Scene& scene, int band) {
   TraceLight light{.sun = scene.sun(), .ground_albedo = scene.ground_albedo[band]};
   for (const TreeKind& kind : scene.kinds)
     light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
+  for (const SceneMedium& medium : scene.media) light.of_media.push_back(medium.optics[static_cast<std::size_t>(band)]);
   return light;
 }
 

@@ -45,7 +45,7 @@ struct Validation {
   LeafOptics optics() const { return scene.kinds[0].leaf[static_cast<std::size_t>(effort.band)]; }
 };
 
-// The scene's sun, leaves, wood and ground in one band, for Monte Carlo.
+// The scene's sun, leaves, wood, media and ground in one band, for Monte Carlo.
 TraceLight traceLight(const Scene& scene, int band);
 
 std::string kindOf(const Scene& scene);  // "single tree", "16 trees" or "periodic"

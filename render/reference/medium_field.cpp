@@ -134,20 +134,20 @@ template <typename Segment>
 bool MediumField::stretch(const Ray& ray, float start, float end, const Segment& segment) const {
   if (blocks_.x == 0) return segment(0u, start, end);
   constexpr int kSide = MediumVoxels::kSide;
-  return ray.throughCells(
-      corner_, kSide * cell_size_, glm::ivec3(0), blocks_ - 1, start, end,
-      [&](const glm::ivec3& block, float from, float to) {
-        const std::int32_t kept = kept_[blockNumber(block)];
-        if (kept < 0) return false;
-        const glm::vec3 low = corner_ + static_cast<float>(kSide) * cell_size_ * glm::vec3(block);
-        return ray.throughCells(
-            low, cell_size_, glm::ivec3(0), glm::ivec3(kSide - 1), from, to,
-            [&](const glm::ivec3& cell, float a, float b) {
-              const int number = 64 * cell.x + 8 * cell.y + cell.z;
-              return segment(
-                  static_cast<std::uint32_t>(kept) * MediumVoxels::kCells + static_cast<std::uint32_t>(number), a, b);
-            });
-      });
+  return ray.throughCells(corner_, kSide * cell_size_, glm::ivec3(0), blocks_ - 1, start, end,
+                          [&](const glm::ivec3& block, float from, float to) {
+                            const std::int32_t kept = kept_[blockNumber(block)];
+                            if (kept < 0) return false;
+                            const glm::vec3 low = corner_ + static_cast<float>(kSide) * cell_size_ * glm::vec3(block);
+                            return ray.throughCells(
+                                low, cell_size_, glm::ivec3(0), glm::ivec3(kSide - 1), from, to,
+                                [&](const glm::ivec3& cell, float a, float b) {
+                                  const int number = 64 * cell.x + 8 * cell.y + cell.z;
+                                  const auto of_block = static_cast<std::size_t>(kept) * MediumVoxels::kCells;
+                                  return segment(
+                                      static_cast<std::uint32_t>(of_block + static_cast<std::size_t>(number)), a, b);
+                                });
+                          });
 }
 
 template <typename Segment>
