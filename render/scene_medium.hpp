@@ -23,14 +23,18 @@ struct SceneMedium {
   float asymmetry = 0.f;  // of particles, g of Henyey and Greenstein [1], -1 < g < 1
   std::string angles;     // of leaves: LeafAngles::named(); empty: as the grid says, or spherical
   // The same everywhere in a box; along x and y it may have no end in a periodic stand.
-  Bounds box{.low = {-kEndless, -kEndless, 0.f}, .high = {kEndless, kEndless, 1.f}};  // [m]
+  Bounds box{.low = glm::vec3(-kEndless), .high = glm::vec3(kEndless)};  // [m]
   float density = 0.f;  // leaf area density, or extinction by particles [1/m]
-  // Or else cells, whose densities count times the density above.
+  // Or else cells, cut to the box, whose densities count times the density above.
   std::shared_ptr<const DensityGrid> grid{};
   std::string source{};  // of the grid, for people
 
   // Box of what is not empty [m].
-  Bounds bounds() const { return grid ? grid->occupied() : box; }
+  Bounds bounds() const {
+    if (!grid) return box;
+    const Bounds cells = grid->occupied();
+    return {.low = glm::max(cells.low, box.low), .high = glm::min(cells.high, box.high)};
+  }
 };
 
 // The same cut to a period about this place where it has no end [m].

@@ -185,7 +185,7 @@ TEST(R16_MediumTrace, MeetsPublishedSlabs) {
   ASSERT_GT(slabs.size(), 100u);
   int number = 0, compared = 0;
   for (const auto& [slab, known] : slabs) {
-    if (++number % 12 != 0 || !known.contains("R") || !known.contains("T") || slab.thickness > 30.) continue;
+    if (++number % 6 != 0 || !known.contains("R") || !known.contains("T") || slab.thickness > 30.) continue;
     TraceMedium medium = layer(Scatterer::particles, static_cast<float>(slab.thickness));
     medium.asymmetry = static_cast<float>(slab.g);
     const RayScene scene({medium}, glm::vec2(1.f));
@@ -269,8 +269,8 @@ TEST(R14_MediumTrace, ConservesEnergy) {
 }
 
 // Check that one layer is the same however it is told: without end, as a box as wide as the period, as cells that the
-// period cuts through, as cells of leaves that are each turned to all directions, and as two layers of half its density
-// in the same place.
+// period cuts through, as cells that a box cuts too, as cells of leaves that are each turned to all directions, and as
+// two layers of half its density in the same place.
 TEST(R14_MediumTrace, ALayerIsTheSameHoweverItIsTold) {
   const glm::vec2 period(1.05f, 0.9f);
   const TraceMedium whole = layer(Scatterer::leaves, 2.5f);
@@ -280,12 +280,16 @@ TEST(R14_MediumTrace, ALayerIsTheSameHoweverItIsTold) {
     return cell.x == 10 ? 1.25f : 2.5f;  // of the last cells one half is in the period
   };
   const TraceMedium cells{.voxels = voxels({3.f, 2.f, 0.f}, 0.1f, {11, 9, 10}, constant)};
+  TraceMedium cut{.voxels = voxels({3.f, 2.f, -0.03f}, 0.1f, {11, 9, 11}, [&](const glm::ivec3& cell) {
+                    return constant(cell) * (cell.z == 0 ? 0.7f : cell.z == 10 ? 0.3f : 1.f);
+                  })};
+  cut.box = whole.box;
   TraceMedium turned = cells;
   turned.voxels->leaves.assign(turned.voxels->density.size(), ProjectedArea{});
   TraceMedium half = whole;
   half.density *= 0.5f;
   const LeafOptics leaf{.reflectance = 0.5f, .transmittance = 0.4f};
-  const std::vector<std::vector<TraceMedium>> all{{whole}, {box}, {cells}, {turned}, {half, half}};
+  const std::vector<std::vector<TraceMedium>> all{{whole}, {box}, {cells}, {cut}, {turned}, {half, half}};
   std::vector<ForwardResult> forward;
   std::vector<BrfResult> brf;
   for (const std::vector<TraceMedium>& media : all) {
@@ -382,7 +386,7 @@ TEST(R15_MediumTrace, TinyLeavesBecomeTurbid) {
   constexpr int draws = 12;
   double mean = 0., squares = 0., coarse = 0.;
   for (std::uint64_t draw = 1; draw <= draws; ++draw) {
-    const double large = reflected(0.1f, 100 + draw), limit = 2. * reflected(0.05f, 200 + draw) - large;
+    const double large = reflected(0.06f, 100 + draw), limit = 2. * reflected(0.03f, 200 + draw) - large;
     mean += limit / draws;
     squares += limit * limit / draws;
     coarse += large / draws;
@@ -391,7 +395,7 @@ TEST(R15_MediumTrace, TinyLeavesBecomeTurbid) {
   const ForwardResult turbid =
       traceForward(RayScene({layer(Scatterer::leaves, 2.f)}, glm::vec2(1.f)), lightOn({leaf}, 0.5), {.paths = 100'000});
   EXPECT_NEAR(mean, turbid.reflected.value, 7.5 * error);
-  EXPECT_LT(error, 0.01);
+  EXPECT_LT(error, 0.005);
   std::cout << mean << " +- " << error << " " << turbid.reflected.value << " " << coarse << "\n";
 }
 

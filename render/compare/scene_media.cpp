@@ -28,6 +28,22 @@ std::vector<LeafRing> ringsOf(const std::string& angles) {
   return rings;
 }
 
+// Box of the leaves of all trees of a kind.
+Bounds leafBoundsOf(const Scene& scene, std::size_t kind) {
+  const TreeMesh& mesh = *scene.kinds[kind].mesh;
+  Bounds box;
+  for (const Placement& tree : scene.stand.trees) {
+    if (tree.kind != kind) continue;
+    const float cosine = std::cos(tree.rotation), sine = std::sin(tree.rotation);
+    for (const glm::uvec3& triangle : mesh.leaf_triangles)
+      for (int corner = 0; corner < 3; ++corner) {
+        const glm::vec3& v = mesh.vertices[triangle[corner]];
+        box.include(tree.position + glm::vec3(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z));
+      }
+  }
+  return box;
+}
+
 }  // namespace
 
 MediumVoxels mediumVoxels(const DensityGrid& grid, float scale, bool oriented) {
@@ -60,9 +76,9 @@ std::vector<TraceMedium> traceMedia(const Scene& scene) {
       const bool oriented = !medium.particles && medium.angles.empty() && medium.grid->hasOrientation();
       made.voxels = mediumVoxels(*medium.grid, medium.density, oriented);
     } else {
-      made.box = medium.box;
       made.density = medium.density;
     }
+    made.box = medium.box;
   }
   return media;
 }
@@ -80,7 +96,14 @@ Scene turbid(const Scene& scene, float cell_size, const Progress& progress) {
       }
     const auto grid = std::make_shared<const DensityGrid>(
         DensityGrid::voxelizeStand(std::array<const TreeMesh*, 1>{of.mesh.get()}, trees, cell_size, {}, progress));
-    made.media.push_back({.optics = of.leaf, .density = 1.f, .grid = grid, .source = of.source});
+    SceneMedium& leaves =
+        made.media.emplace_back(SceneMedium{.optics = of.leaf, .density = 1.f, .grid = grid, .source = of.source});
+    // No wider than the leaves are, so that as much light meets it.
+    const Bounds box = leafBoundsOf(scene, kind);
+    for (int axis = scene.stand.period ? 2 : 0; axis < 3; ++axis) {
+      leaves.box.low[axis] = box.low[axis];
+      leaves.box.high[axis] = box.high[axis];
+    }
     TreeMesh wood = *of.mesh;
     wood.leaf_triangles.clear();
     wood.leaf_of_triangle.clear();

@@ -103,17 +103,19 @@ void MediumField::keep(const MediumVoxels& voxels, const std::optional<glm::vec2
   }
 
   densities_ = voxels.density;
-  // Where the last cells reach beyond the period, what they hold lies before its end.
-  for (int axis = 0; period && axis < 2; ++axis) {
-    const float beyond = box_.high[axis] - (box_.low[axis] + (*period)[axis]);
-    if (beyond <= 1e-4f * cell_size_) continue;
-    const float scale = cell_size_ / (cell_size_ - beyond);
-    box_.high[axis] -= beyond;
-    const int last = static_cast<int>(std::floor((box_.high[axis] - corner_[axis]) / cell_size_));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (period && axis < 2) box_.high[axis] = std::min(box_.high[axis], box_.low[axis] + (*period)[axis]);
+    // What a cell holds that the box cuts lies within the box. Less than a thousandth of a cell holds next to nothing.
+    std::vector<float> denser;
+    for (int cell = 0; cell < MediumVoxels::kSide * blocks_[axis]; ++cell) {
+      const float start = corner_[axis] + static_cast<float>(cell) * cell_size_;
+      const float inside = std::min(start + cell_size_, box_.high[axis]) - std::max(start, box_.low[axis]);
+      denser.push_back(1.f / std::clamp(inside / cell_size_, 1e-3f, 1.f));
+    }
     for (std::size_t i = 0; i < densities_.size(); ++i) {
       const glm::ivec3 in_block(i / 64 % 8, i / 8 % 8, i % 8);
-      const int cell = MediumVoxels::kSide * (voxels.blocks[i / MediumVoxels::kCells] - low)[axis] + in_block[axis];
-      if (cell == last) densities_[i] *= scale;
+      const glm::ivec3 block = voxels.blocks[i / MediumVoxels::kCells] - low;
+      densities_[i] *= denser[static_cast<std::size_t>(MediumVoxels::kSide * block[axis] + in_block[axis])];
     }
   }
   if (voxels.leaves.empty()) return;

@@ -82,6 +82,10 @@ Bounds occupied(const TraceMedium& medium) {
   if (low.x > high.x) return box;
   box.low = voxels.corner + voxels.cell_size * glm::vec3(low);
   box.high = voxels.corner + voxels.cell_size * glm::vec3(high);
+  if (!medium.box.empty()) {
+    box.low = glm::max(box.low, medium.box.low);
+    box.high = glm::min(box.high, medium.box.high);
+  }
   return box;
 }
 

@@ -48,11 +48,11 @@ struct TraceMedium {
   // where the stand is periodic. In the stand's coordinates [m].
   Bounds box{};
   float density = 0.f;  // one-sided leaf area, or extinction by particles, per volume [1/m], >= 0
-  // Otherwise, instead of both:
+  // Otherwise, instead of both; or cut to the box, where it is not empty: a cell that is cut keeps what it holds.
   std::optional<MediumVoxels> voxels{};
 };
 
-// Box of all cells with something in them, or of a homogeneous medium [m].
+// Box of all cells with something in them, as far as they are not cut off, or of a homogeneous medium [m].
 Bounds occupied(const TraceMedium& medium);
 
 // Throws InvalidInput on a value out of its range, a medium that is nowhere, rings whose weights do not sum to 1, a box
