@@ -350,6 +350,7 @@ std::vector<std::string> figureNames(const TraceOptions& options, const Scene& s
 Scene turbidScene(const TraceOptions& options, const RunOptions& run, const Scene& scene) {
   if (scene.kinds[0].mesh->leaf_count == 0) throw InvalidInput("--turbid: must be for a scene with trees");
   Scene made = turbid(scene, *options.turbid, terminalProgress("voxelizing", run.quiet));
+  made.camera = cameraOf(scene);  // the same picture
   made.name = fmt::format("{}, turbid in cells of {:.6g} m", scene.name, *options.turbid);
   return made;
 }
@@ -361,14 +362,14 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (!options.picture.empty()) requirePictureName(options.picture);
   if (!options.checkpoint.empty()) requireNamed(options.checkpoint, ".trace");
   Scene scene = readScene(options.scene, Media::taken);
-  if (options.turbid) scene = turbidScene(options, run, scene);
   apply(options.camera, scene);
+  const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
+  if (options.turbid) scene = turbidScene(options, run, scene);
   const std::vector<BrfView> views = brfViews(options.brf, scene);
   std::vector<NamedEstimate> reference;
   if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, scene, views));
   TraceRun trace(options, run, scene);
   if (!options.only_picture && !options.brf.only) trace.light();
-  const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
   if (pictured && !options.brf.only && !interrupted()) trace.picture();
   if (!views.empty() && !interrupted()) trace.brf(views);
   if (!reference.empty()) trace.compare(std::move(reference));

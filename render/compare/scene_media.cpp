@@ -98,9 +98,10 @@ Scene turbid(const Scene& scene, float cell_size, const Progress& progress) {
         DensityGrid::voxelizeStand(std::array<const TreeMesh*, 1>{of.mesh.get()}, trees, cell_size, {}, progress));
     SceneMedium& leaves =
         made.media.emplace_back(SceneMedium{.optics = of.leaf, .density = 1.f, .grid = grid, .source = of.source});
-    // No wider than the leaves are, so that as much light meets it.
+    // No wider than the leaves are, so that as much light meets it; but not flat.
     const Bounds box = leafBoundsOf(scene, kind);
     for (int axis = scene.stand.period ? 2 : 0; axis < 3; ++axis) {
+      if (box.size()[axis] < 1e-3f * cell_size) continue;
       leaves.box.low[axis] = box.low[axis];
       leaves.box.high[axis] = box.high[axis];
     }

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <vector>
 
 #include "render/reference/detail/cosine_law.hpp"

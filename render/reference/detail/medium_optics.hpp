@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
