@@ -10,7 +10,7 @@ namespace sunfleck::detail {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kMostBlocks = 1u << 28;  // of the box around all, kept or not
+constexpr double kMostBlocks = 1u << 26;  // of the box around all, kept or not
 
 }  // namespace
 
@@ -90,7 +90,7 @@ void MediumField::keep(const MediumVoxels& voxels, const std::optional<glm::vec2
   }
   const glm::dvec3 spanned = glm::dvec3(high) - glm::dvec3(low);
   require(spanned.x * spanned.y * spanned.z <= kMostBlocks, "blocks that a medium's cells span",
-          spanned.x * spanned.y * spanned.z, "at most 2^28: they lie too far apart");
+          spanned.x * spanned.y * spanned.z, "at most 2^26: they lie too far apart");
   blocks_ = high - low;
   const float block_side = static_cast<float>(MediumVoxels::kSide) * cell_size_;
   corner_ += block_side * glm::vec3(low);
