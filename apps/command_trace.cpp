@@ -25,6 +25,7 @@
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "grid/density_grid.hpp"
+#include "render/compare/scene_media.hpp"
 #include "render/compare/validation.hpp"
 #include "render/image_file.hpp"
 #include "render/reference/brf_trace.hpp"
@@ -54,6 +55,7 @@ struct TraceOptions {
   std::string leaves, picture, cells, spectrum, spectrum_out;
   double cell = 0.25;             // side [m]
   std::vector<float> other_leaf;  // reflectance, transmittance
+  std::optional<float> turbid;    // side of a cell [m]
   std::string checkpoint, target, time, part, compare;
   double write_every = 60.;  // [s]
 };
@@ -118,7 +120,7 @@ class TraceRun {
         run_(run),
         scene_(scene),
         extent_(extentOf(options)),
-        rays_(meshes(scene), scene.stand, !options.without_wood) {
+        rays_(meshes(scene), scene.stand, !options.without_wood, traceMedia(scene)) {
     if (!options.other_leaf.empty()) traced_leaf_ = leafOfAll(scene, options);
     if (!options.spectrum.empty()) {
       Spectrum spectrum = readSpectrum(options.spectrum, scene, options.band);
@@ -327,6 +329,10 @@ class TraceRun {
       if (kind.leaf[band] != traced)
         throw InvalidInput("--other-leaf: must be for scenes whose leaves are all alike in the band");
     if (traced.gloss > 0.f) throw InvalidInput("--other-leaf: must be for scenes whose leaves have no gloss");
+    for (const SceneMedium& medium : scene.media)
+      if (medium.particles || medium.optics[band] != traced)
+        throw InvalidInput(
+            "--other-leaf: must be for scenes whose leaves are all alike in the band, without particles");
     OrderTable().reweighted(traced, {.reflectance = options.other_leaf[0], .transmittance = options.other_leaf[1]});
     return traced;
   }
@@ -374,14 +380,26 @@ class TraceRun {
 };
 
 // The figures that a run tells.
-std::vector<std::string> figureNames(const TraceOptions& options, const std::vector<BrfView>& views) {
+std::vector<std::string> figureNames(const TraceOptions& options, const Scene& scene,
+                                     const std::vector<BrfView>& views) {
   std::vector<std::string> names;
+  ForwardResult told;
+  if (std::any_of(scene.media.begin(), scene.media.end(), [](const SceneMedium& medium) { return medium.particles; }))
+    told.absorbed_particles = Estimate();
   if (!options.only_picture && !options.brf.only)
-    for (const NamedEstimate& figure : figuresOf(ForwardResult())) names.push_back(figure.name);
+    for (const NamedEstimate& figure : figuresOf(told)) names.push_back(figure.name);
   for (const BrfView& view : views) names.push_back(view.name);
   if (!views.empty()) names.push_back("brf_albedo");
   if (names.empty()) throw InvalidInput("--compare: must be without --only-picture");
   return names;
+}
+
+Scene turbidScene(const TraceOptions& options, const RunOptions& run, const Scene& scene) {
+  if (scene.kinds[0].mesh->leaf_count == 0) throw InvalidInput("--turbid: must be for a scene with trees");
+  Scene made = turbid(scene, *options.turbid, terminalProgress("voxelizing", run.quiet));
+  made.camera = cameraOf(scene);  // the same picture
+  made.name = fmt::format("{}, turbid in cells of {:.6g} m", scene.name, *options.turbid);
+  return made;
 }
 
 int runTrace(const TraceOptions& options, const RunOptions& run) {
@@ -392,13 +410,15 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (!options.spectrum_out.empty()) requireNamed(options.spectrum_out, ".csv");
   if (!options.picture.empty()) requirePictureName(options.picture);
   if (!options.checkpoint.empty()) requireNamed(options.checkpoint, ".trace");
-  Scene scene = readScene(options.scene);
+  Scene scene = readScene(options.scene, Media::taken);
   apply(options.camera, scene);
+  const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
+  if (options.turbid) scene = turbidScene(options, run, scene);
   const std::vector<BrfView> views = brfViews(options.brf, scene);
   if (!options.brf.mes.empty() && (scene.sky.kind != SceneSky::Kind::none || scene.sun_diameter > 0.f))
     throw InvalidInput("--mes: must be for light from one direction, without [sky] and sun.diameter_deg");
   std::vector<NamedEstimate> reference;
-  if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, views));
+  if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, scene, views));
   TraceRun trace(options, run, scene);
   if (!options.only_picture && !options.brf.only) trace.light();
   const bool pictured = (scene.camera && options.spectrum.empty()) || !options.picture.empty() || options.only_picture;
@@ -492,6 +512,12 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
       ->add_option("--part", trace->part, "Compute the K-th of N equal parts, K/N, for sunfleck merge to put together")
       ->needs("--checkpoint")
       ->excludes(target);
+  command
+      ->add_option("--turbid", trace->turbid,
+                   "Trace the leaves of the trees as a turbid medium: their density and orientation in cells of this "
+                   "side, in metres. Wood stays")
+      ->check(numberIn(2e-5, 1e6, "in [2e-5, 1e6] m"))
+      ->excludes("--leaves");
   command->add_flag("--without-wood", trace->without_wood, "Leave the wood out");
   command->callback([trace, &options, &status] { status = runTrace(*trace, options); });
 }

@@ -60,7 +60,7 @@ void requireMeshFor(const SceneOptions& options) {
 
 }  // namespace
 
-Scene readScene(const SceneOptions& options) {
+Scene readScene(const SceneOptions& options, Media media) {
   requireMeshFor(options);
   ImportRules rules;
   rules.leaf = options.leaf;
@@ -68,6 +68,8 @@ Scene readScene(const SceneOptions& options) {
   rules.scale = options.scale;
   rules.up = options.up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
   Scene scene = sunfleck::readScene(options.scene, rules);
+  if (media == Media::refused && !scene.media.empty())
+    throw InvalidInput(options.scene + ": has a [medium], which trace alone takes");
   for (const TreeKind& kind : scene.kinds)
     if (kind.dropped.leaf_triangles > 0)
       fmt::print(stderr, "sunfleck: {}: left out {} leaf triangles of no area{}\n", options.scene,
@@ -78,6 +80,10 @@ Scene readScene(const SceneOptions& options) {
   if (options.albedo)
     for (TreeKind& kind : scene.kinds)
       for (LeafOptics& leaf : kind.leaf) leaf.reflectance = leaf.transmittance = 0.5f * *options.albedo;
+  if (options.albedo)
+    for (SceneMedium& medium : scene.media)
+      if (!medium.particles)
+        medium.optics.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
   if (options.sun_zenith_deg) scene.sun_zenith = glm::radians(*options.sun_zenith_deg);
   if (options.sun_azimuth_deg) scene.sun_azimuth = glm::radians(*options.sun_azimuth_deg);
   if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);

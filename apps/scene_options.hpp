@@ -21,7 +21,9 @@ struct SceneOptions {
   std::optional<std::vector<float>> period;
 };
 void addSceneOptions(CLI::App& command, SceneOptions& options);
-Scene readScene(const SceneOptions& options);
+// Scenes with media are refused where nothing is done with them.
+enum class Media { refused, taken };
+Scene readScene(const SceneOptions& options, Media media = Media::refused);
 
 // The camera, as far as the command line changes it.
 struct CameraOptions {

@@ -19,12 +19,15 @@ struct Row {
 };
 
 std::vector<Row> rowsOf(const ForwardResult& r) {
-  return {{"reflected", "back to the sky", r.reflected},
-          {"absorbed_leaves", "absorbed by leaves", r.absorbed_leaves},
-          {"absorbed_wood", "absorbed by wood", r.absorbed_wood},
-          {"arriving_ground", "arriving at the ground", r.arriving_ground},
-          {"arriving_ground_direct", "  without meeting a leaf", r.arriving_ground_direct},
-          {"absorbed_ground", "absorbed by the ground", r.absorbed_ground}};
+  std::vector<Row> rows{{"reflected", "back to the sky", r.reflected},
+                        {"absorbed_leaves", "absorbed by leaves", r.absorbed_leaves},
+                        {"absorbed_wood", "absorbed by wood", r.absorbed_wood},
+                        {"arriving_ground", "arriving at the ground", r.arriving_ground},
+                        {"arriving_ground_direct", "  without meeting a leaf", r.arriving_ground_direct},
+                        {"absorbed_ground", "absorbed by the ground", r.absorbed_ground}};
+  if (r.absorbed_particles)
+    rows.insert(rows.begin() + 3, {"absorbed_particles", "absorbed by particles", *r.absorbed_particles});
+  return rows;
 }
 
 // Orders up to the last that any light has.

@@ -296,6 +296,48 @@ double DensityGrid::crownArea() const {
   return cells_->crown_area;
 }
 
+glm::vec3 DensityGrid::corner() const {
+  return glm::vec3(cells_->corner);
+}
+
+bool DensityGrid::hasOrientation() const {
+  return !cells_->moments.empty();
+}
+
+std::size_t DensityGrid::blocks() const {
+  std::size_t count = cells_->density->leafCount();
+  overTiles(*cells_->density,
+            [&](float, std::size_t cells, const openvdb::CoordBBox&) { count += cells / Block::kCells; });
+  return count;
+}
+
+void DensityGrid::visitBlocks(const std::function<void(const Block&)>& visit) const {
+  const Cells& cells = *cells_;
+  Block block;
+  const auto place = [&](const Coord& first) { block.first = {first.x(), first.y(), first.z()}; };
+  for (const Leaf* leaf : blocksOf(*cells.density)) {
+    place(leaf->origin());
+    std::copy_n(leaf->buffer().data(), Block::kCells, block.density.begin());
+    block.orientation.fill({});
+    if (!cells.moments.empty()) {
+      auto moments = cells.moments[leaf->transientData()].begin();
+      for (auto cell = leaf->cbeginValueOn(); cell; ++cell) block.orientation[cell.pos()] = *moments++;
+    }
+    visit(block);
+  }
+  block.orientation.fill({});
+  overTiles(*cells.density, [&](float density, std::size_t, const openvdb::CoordBBox& box) {
+    block.density.fill(density);
+    constexpr int kSide = Leaf::DIM;
+    for (int x = box.min().x(); x <= box.max().x(); x += kSide)
+      for (int y = box.min().y(); y <= box.max().y(); y += kSide)
+        for (int z = box.min().z(); z <= box.max().z(); z += kSide) {
+          place(Coord(x, y, z));
+          visit(block);
+        }
+  });
+}
+
 std::size_t DensityGrid::memoryBytes() const {
   std::size_t bytes = sizeof(Cells);
   for (const Cells::Named& grid : cells_->named()) bytes += grid.bytes;

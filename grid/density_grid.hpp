@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -91,6 +93,18 @@ class DensityGrid {
     std::size_t cells, bytes;  // occupied; in memory
   };
   std::vector<Summary> grids() const;  // in the order in which they are written
+
+  // Cells as they are kept, in blocks of 8 x 8 x 8: cell (x, y, z) of a block is number 64 x + 8 y + z.
+  struct Block {
+    static constexpr std::size_t kCells = 512;
+    glm::ivec3 first{0};                                // cell (0, 0, 0) of the block, in whole cells from corner()
+    std::array<float, kCells> density{};                // [1/m]
+    std::array<LeafOrientation, kCells> orientation{};  // all directions alike where it is not known
+  };
+  glm::vec3 corner() const;  // lower corner of cell (0, 0, 0) [m]
+  bool hasOrientation() const;
+  std::size_t blocks() const;  // that hold leaves
+  void visitBlocks(const std::function<void(const Block&)>& visit) const;
 
   struct Cells;  // the OpenVDB grids; complete in grid/detail alone
  private:

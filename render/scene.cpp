@@ -23,6 +23,7 @@ glm::vec3 placed(const glm::vec3& vertex, const Placement& placement, float cosi
 
 Bounds standing(const TreeMesh& tree, const Bounds& prototype, const Placement& placement) {
   Bounds box;
+  if (prototype.empty()) return box;
   if (placement.rotation == 0.f) {
     box.include(prototype.low + placement.position);
     box.include(prototype.high + placement.position);
@@ -68,6 +69,8 @@ Bounds bounds(const Scene& scene) {
   Bounds box;
   for (const Placement& tree : scene.stand.trees)
     box.include(standing(*scene.kindOf(tree).mesh, prototypes[tree.kind], tree));
+  const glm::vec2 about = box.empty() ? glm::vec2(0.f) : glm::vec2(box.centre());
+  for (const SceneMedium& medium : scene.media) box.include(bounds(medium, scene.stand.period, about));
   return box;
 }
 
@@ -97,6 +100,14 @@ Camera showingAll(const Scene& scene, Camera camera) {
       const glm::vec3 p = placed(v, placement, cosine, sine);
       seen.include({glm::dot(p, axes.right), glm::dot(p, axes.up), glm::dot(p, axes.along)});
     });
+  }
+  if (!scene.media.empty()) {
+    const Bounds all = bounds(scene);
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::vec3 p(corner & 1 ? all.low.x : all.high.x, corner & 2 ? all.low.y : all.high.y,
+                        corner & 4 ? all.low.z : all.high.z);
+      seen.include({glm::dot(p, axes.right), glm::dot(p, axes.up), glm::dot(p, axes.along)});
+    }
   }
   const glm::vec3 centre = seen.centre(), half_size = 0.5f * seen.size();
   camera.target = centre.x * axes.right + centre.y * axes.up + centre.z * axes.along;

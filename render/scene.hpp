@@ -13,6 +13,7 @@
 #include "core/leaf_optics.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
+#include "render/scene_medium.hpp"
 #include "render/scene_sky.hpp"
 #include "scattering/rpv_ground.hpp"
 
@@ -46,7 +47,8 @@ struct Scene {
   std::string origin;                       // the file or the name it was read from, with which messages begin
   std::vector<TreeKind> kinds{TreeKind{}};  // at least one; of each stands a tree
   Stand stand;
-  glm::vec3 ground_albedo{0.f};  // Lambertian, per band [1], 0 .. 1; other grounds, per band, in its place:
+  std::vector<SceneMedium> media;  // of these, trace alone knows; trees may then be without leaves or without anything
+  glm::vec3 ground_albedo{0.f};    // Lambertian, per band [1], 0 .. 1; other grounds, per band, in its place:
   std::optional<std::array<RpvGround, kBands>> ground_rpv;
   std::array<std::shared_ptr<const GroundTexture>, kBands> ground_texture;  // of all bands, or none
   float sun_zenith = 0.f;                                                   // [rad], 0 .. below pi/2
@@ -67,7 +69,7 @@ std::string sourceOf(const Scene& scene);
 // all its trees stand together.
 void intoOnePeriod(Stand& stand);
 
-Bounds bounds(const Scene& scene);    // of all trees of the stand [m]
+Bounds bounds(const Scene& scene);    // of all trees of the stand and of its media [m]
 Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
 // The camera moved and widened so that the whole stand fills its picture; direction and pixels stay.
 Camera showingAll(const Scene& scene, Camera camera);

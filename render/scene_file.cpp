@@ -14,6 +14,7 @@
 #include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
 #include "plants/weber_penn.hpp"
+#include "render/detail/scene_media_file.hpp"
 #include "render/detail/scene_table.hpp"
 #include "render/image_file.hpp"
 #include "sky/preetham.hpp"
@@ -128,6 +129,9 @@ void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, con
 
 void readStand(Scene& scene, detail::SceneTable stand) {
   const std::string kind = stand.text("kind", "single");
+  if (scene.kinds[0].mesh->leaf_count == 0 && kind != "single" && kind != "periodic")
+    throw InvalidInput(scene.origin + ": stand.kind = \"" + kind +
+                       "\": must be single or periodic in a scene without trees");
   const glm::vec2 touching = touchingPeriod(scene);
   const auto sides = [&](const std::string& key) {
     if (!stand.has(key)) return touching;
@@ -215,8 +219,8 @@ void readSky(Scene& scene, detail::SceneTable sky, const std::filesystem::path& 
   if (read.kind == Kind::image) {
     if (!sky.has("file")) throw InvalidInput(scene.origin + ": [sky] of kind \"image\" has no key file");
     read.file = sky.text("file", "");
-    ImageSky image =
-        imageSky(readRadiances(folder / read.file), double{degrees(sky, "rotation_deg", -360., 360., "in [-360, 360]")});
+    ImageSky image = imageSky(readRadiances(folder / read.file),
+                              double{degrees(sky, "rotation_deg", -360., 360., "in [-360, 360]")});
     read.negative_values = image.negative_values;
     read.image = std::make_shared<const SkyMap>(std::move(image.sky));
   }
@@ -270,7 +274,8 @@ void readGround(Scene& scene, detail::SceneTable ground, const std::filesystem::
 
 Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   for (const auto& [key, node] : table) {
-    static constexpr std::array known{"name", "tree", "stand", "leaf", "wood", "ground", "sun", "sky", "camera"};
+    static constexpr std::array known{"name", "tree",   "medium", "stand", "leaf",
+                                      "wood", "ground", "sun",    "sky",   "camera"};
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       throw InvalidInput(fmt::format("{}:{}: unknown key \"{}\"; see: sunfleck --help scene", file.string(),
                                      node.source().begin.line, key.str()));
@@ -283,7 +288,14 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   readOptics(optics, leaf, "", wood, "");
   for (const detail::SceneTable* read : {&leaf, &wood}) read->done();
   readGround(scene, section("ground"), file.parent_path());
-  readTrees(scene, table.get("tree"), optics, file);
+  if (const toml::node* media = table.get("medium")) detail::readMedia(scene, *media, optics.leaf, file);
+  if (scene.media.empty() || table.contains("tree")) {
+    readTrees(scene, table.get("tree"), optics, file);
+  } else {
+    scene.kinds[0] = optics;
+    scene.kinds[0].name = scene.kinds[0].source = "no tree";
+    scene.kinds[0].mesh = std::make_shared<const TreeMesh>();
+  }
   readStand(scene, section("stand"));
   readSun(scene, section("sun"));
   readSky(scene, section("sky"), file.parent_path());
@@ -355,9 +367,13 @@ std::optional<Scene> builtin(const std::string& name) {
 glm::vec2 touchingPeriod(const Scene& scene) {
   glm::vec2 period(0.f);
   for (const TreeKind& kind : scene.kinds) {
+    if (kind.mesh->leaf_count == 0) continue;
     const glm::vec3 size = leafBounds(*kind.mesh).size();
     period = glm::max(period, glm::max(glm::vec2(size), glm::vec2(0.15f * std::max({size.x, size.y, size.z}))));
   }
+  if (period != glm::vec2(0.f)) return period;
+  for (const SceneMedium& medium : scene.media)
+    period = glm::max(period, glm::vec2(bounds(medium, {}, glm::vec2(0.f)).size()));
   return period;
 }
 
@@ -408,6 +424,24 @@ seed = 1
 # Several kinds of trees: a [[tree]] with these keys for each, instead of [tree]; names must differ, and of each kind
 # stands one tree at least. Trees of a grid take the kinds in turn along x and along y. trace and voxelize --stand take
 # several kinds, validate and render one alone.
+
+# [medium]                    # what fills space, alone or among trees; trace alone takes it. It stands once, and in a
+                              # periodic stand once in each period. Without a [tree], no tree stands
+# kind = "leaves"             # leaves too small to tell apart, or "particles" of Henyey and Greenstein
+# density = 1.0               # leaves: one-sided leaf area per volume in 1/m, 0 to 1e6, the same everywhere ...
+# extinction = 1.0            # ... particles: extinction in 1/m, 0 to 1e6 ...
+# bottom = 0.0                # ... between two heights, in a periodic stand ...
+# top = 1.0
+# box = [-1, -1, 0, 1, 1, 2]  # ... or in a box: its corners
+# file = "leaves.vdb"         # instead: cells, as sunfleck voxelize writes them, with their orientation; wood is left out
+# scale = 1.0                 # by which their densities count, above 0
+# angles = "spherical"        # of leaves: spherical, planophile, erectophile, plagiophile, extremophile or uniform; the
+                              # file's where it tells them
+# reflectance = 0.475         # of leaves; those of the file in the mean, or of [leaf], if not given
+# transmittance = 0.475
+# albedo = 1.0                # of particles, 0 to 1
+# asymmetry = 0.0             # of particles: mean cosine of scattering, -0.999 to 0.999
+# Several media, a [[medium]] for each, may fill the same space.
 
 [stand]
 kind = "single"               # single | periodic | grid | positions

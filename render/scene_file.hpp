@@ -20,7 +20,7 @@ std::vector<std::string> builtinScenes();
 std::string sceneFileHelp();
 
 // Side lengths of the rectangle in which the widest trees touch their own copies: those of their leaves' box, and no
-// less than a seventh of its longest [m].
+// less than a seventh of its longest; without trees those of the media's boxes, or 1 where they have no end [m].
 glm::vec2 touchingPeriod(const Scene& scene);
 
 }  // namespace sunfleck

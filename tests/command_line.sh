@@ -284,6 +284,40 @@ does "transmittance_blue" voxelize kinds.toml --stand --cell-size 0.1 -o kinds.v
 does "mean_reflectance" voxelize kinds.vdb --json
 does "reflectance_red" voxelize leaf.obj --optics --cell-size 0.1 -o leaf_optics.nvdb
 "$program" trace kinds.toml --paths 1000 -o leaves.csv >/dev/null && grep -q "^dark,0," leaves.csv || fail "trace: no kind"
+# Media: alone, in a period, with cells of a file, among trees; and leaves turned into one.
+printf '[medium]\ndensity = 3\nangles = "planophile"\n[stand]\nkind = "periodic"\n' >slab.toml
+printf '[medium]\nkind = "particles"\nextinction = 2\nasymmetry = 0.5\nbox = [0, 0, 0, 1, 1, 1]\n' >fog.toml
+"$program" voxelize leaf.obj -o leaf.vdb --cell-size 0.25 >/dev/null || fail "voxelize for a medium"
+printf '[tree]\nfile = "leaf.obj"\n[medium]\nfile = "leaf.vdb"\nscale = 0.5\n' >cells.toml
+printf '[medium]\ndensity = 3\n[stand]\nkind = "grid"\n' >slab_in_a_grid.toml
+printf '[medium]\ndensity = 3\n' >endless.toml
+printf '[medium]\ndensity = 3\nfile = "leaf.vdb"\n' >twice.toml
+printf '[medium]\ntop = 2\n' >neither.toml
+printf '[medium]\ndensity = 3\nangles = "round"\n' >angles.toml
+printf '[medium]\nkind = "particles"\nextinction = 3\nasymmetry = 1\n' >asymmetry.toml
+printf '[medium]\nfile = "none.vdb"\n' >none.toml
+printf '[medium]\nfile = "leaf.obj"\n' >not_a_grid.toml
+does "absorbed by leaves" trace slab.toml --paths 1000 --brf 0:30:30 --brf-paths 100
+does "absorbed by particles" trace fog.toml --paths 1000
+does "absorbed_particles" trace fog.toml --paths 1000 --json
+does "picture" trace fog.toml --only-picture --samples 1 --size 16 16
+does "absorbed by leaves" trace cells.toml --paths 1000 --period 1 1
+does "turbid in cells of 0.25 m" trace leaf.obj --paths 1000 --turbid 0.25 --brf 0:0:1 --brf-paths 100 --period 2 2
+refuses "trace alone" render slab.toml -o x.png
+refuses "trace alone" voxelize fog.toml
+refuses "trace alone" validate cells.toml
+refuses "without trees" trace slab_in_a_grid.toml
+refuses "periodic" trace endless.toml
+refuses "both file and density" trace twice.toml
+refuses "neither file nor density" trace neither.toml
+refuses "leaf angles" trace angles.toml
+refuses "asymmetry" trace asymmetry.toml
+refuses "none.vdb" trace none.toml
+refuses "leaf.obj" trace not_a_grid.toml
+refuses "with trees" trace slab.toml --turbid 0.1
+refuses "--leaves" trace leaf.obj --turbid 0.1 -o x.csv
+refuses "cell" trace leaf.obj --turbid 0.00002
+
 # A trace killed at any moment goes on to what it would have told; parts make the whole.
 shares() { grep -v seconds "$1"; }
 run="trace leaf.obj --period 2 2 --paths 4e5 --json"

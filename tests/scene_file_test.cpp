@@ -321,3 +321,60 @@ TEST_F(SceneFile, LightThatTheModelsDoNotKnowIsRefused) {
   for (const char* light : {"[sky]\nkind = \"uniform\"\n", "[sun]\ndiameter_deg = 0.5\n", "[sun]\nirradiance = 0.5\n"})
     EXPECT_THROW(requireModelled(readScene(write("s.toml", tree + light))), InvalidInput) << light;
 }
+
+// Check media, alone and among trees, and what is refused of them.
+TEST_F(SceneFile, Media) {
+  write("tree.obj", kSquare);
+  const Scene alone = readScene(write("s.toml", R"(
+[[medium]]
+density = 2.0
+bottom = 1.0
+top = 3.0
+angles = "erectophile"
+[[medium]]
+kind = "particles"
+extinction = 0.5
+box = [-1, -2, 0, 1, 2, 4]
+albedo = [0.1, 0.2, 0.3]
+asymmetry = -0.5
+[leaf]
+reflectance = 0.4
+transmittance = 0.3
+[stand]
+kind = "periodic"
+)"));
+  ASSERT_EQ(alone.media.size(), 2u);
+  EXPECT_EQ(alone.kinds[0].mesh->leaf_count, 0u);
+  EXPECT_EQ(alone.stand.period, glm::vec2(2.f, 4.f));  // of the box
+  const SceneMedium &leaves = alone.media[0], &fog = alone.media[1];
+  EXPECT_FALSE(leaves.particles);
+  EXPECT_EQ(leaves.density, 2.f);
+  EXPECT_EQ(leaves.angles, "erectophile");
+  EXPECT_EQ(leaves.box.low.z, 1.f);
+  EXPECT_EQ(leaves.box.high.z, 3.f);
+  EXPECT_EQ(leaves.optics[2], (LeafOptics{.reflectance = 0.4f, .transmittance = 0.3f}));
+  EXPECT_TRUE(fog.particles);
+  EXPECT_EQ(fog.density, 0.5f);
+  EXPECT_EQ(fog.asymmetry, -0.5f);
+  EXPECT_EQ(fog.optics[1].reflectance, 0.2f);
+  EXPECT_EQ(fog.box.high, glm::vec3(1.f, 2.f, 4.f));
+  EXPECT_EQ(bounds(alone).size(), glm::vec3(2.f, 4.f, 4.f));
+
+  const Scene among = readScene(write("t.toml", "[tree]\nfile = \"tree.obj\"\n[medium]\ndensity = 1\n"));
+  EXPECT_EQ(among.kinds[0].mesh->leaf_count, 1u);
+  EXPECT_EQ(among.media.size(), 1u);
+
+  EXPECT_EQ(refusal("[medium]\n"), "s.toml: [medium] has neither file nor density: must have one of them");
+  EXPECT_EQ(refusal("[medium]\nkind = \"fog\"\n"), "s.toml: medium.kind = \"fog\": must be leaves or particles");
+  EXPECT_EQ(refusal("[medium]\ndensity = -1\n"), "s.toml:2: medium.density = -1: must be in [0, 1e6] 1/m");
+  EXPECT_EQ(refusal("[medium]\ndensity = 1\nalbedo = 1\n"),
+            "s.toml:3: unknown key \"albedo\" in [medium]; see: sunfleck --help scene");
+  EXPECT_EQ(refusal("[medium]\ndensity = 1\ntop = -1\n"), "s.toml: medium.top = -1: must be above the bottom");
+  EXPECT_EQ(refusal("[medium]\ndensity = 1\nbox = [0, 0, 0, 1, 0, 1]\n"),
+            "s.toml: medium.box: must have its low corner first and be wider than 0");
+  EXPECT_EQ(refusal("[medium]\ndensity = 1\nfile = \"x.vdb\"\n"),
+            "s.toml: [medium] has both file and density: must be one of them");
+  EXPECT_EQ(refusal("[medium]\ndensity = 1\n[stand]\nkind = \"grid\"\n"),
+            "s.toml: stand.kind = \"grid\": must be single or periodic in a scene without trees");
+  EXPECT_EQ(refusal("medium = []\n"), "s.toml: medium = []: must be a table [medium], or a [[medium]] for each");
+}

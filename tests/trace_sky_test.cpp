@@ -1,7 +1,7 @@
 // Check that light of skies and of the sun's disc gives what closed forms say, that paths of light and paths from the
-// eye agree under each of them, and that lights add up. Monte Carlo means are held to 5.3 standard errors, a false alarm
-// of 1.2e-7 for each of the 400 or so, more than half of them per leaf; where a sum is exact, to rounding in single
-// precision.
+// eye agree under each of them, and that lights add up. Monte Carlo means are held to 5.3 standard errors, a false
+// alarm of 1.2e-7 for each of the 400 or so, more than half of them per leaf; where a sum is exact, to rounding in
+// single precision.
 #include <gtest/gtest.h>
 
 #include <array>

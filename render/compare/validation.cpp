@@ -46,6 +46,8 @@ std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& 
     light.ground_texture = scene.ground_texture[static_cast<std::size_t>(band)];
     for (const TreeKind& kind : scene.kinds)
       light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
+    for (const SceneMedium& medium : scene.media)
+      light.of_media.push_back(medium.optics[static_cast<std::size_t>(band)]);
   }
   return lights;
 }

@@ -45,8 +45,8 @@ struct Validation {
   LeafOptics optics() const { return scene.kinds[0].leaf[static_cast<std::size_t>(effort.band)]; }
 };
 
-// The scene's sun, sky, leaves, wood and ground in these bands, for Monte Carlo. Throws InvalidInput as sunAndSky()
-// does.
+// The scene's sun, sky, leaves, wood, media and ground in these bands, for Monte Carlo. Throws InvalidInput as
+// sunAndSky() does.
 std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& bands);
 TraceLight traceLight(const Scene& scene, int band);  // the same in one
 

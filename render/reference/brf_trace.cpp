@@ -93,7 +93,7 @@ std::uint64_t BrfJob::unitsOf(std::uint64_t paths) const {
 }
 
 TraceIdentity BrfJob::identity() const {
-  TraceIdentity identity = identityOf(parts_->bands);
+  TraceIdentity identity = identityOf(parts_->bands, parts_->scene);
   std::string views;
   for (const ViewDirection& view : parts_->views) views += fmt::format("{} {}; ", view.zenith, view.azimuth);
   identity["views"] = views;

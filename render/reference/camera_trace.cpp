@@ -140,7 +140,7 @@ std::uint64_t CameraJob::unitsOf(std::uint64_t samples) const {
 TraceIdentity CameraJob::identity() const {
   const PixelRays& rays = parts_->rays;
   const auto text = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
-  TraceIdentity identity = identityOf(parts_->bands);
+  TraceIdentity identity = identityOf(parts_->bands, parts_->scene);
   identity["camera"] = fmt::format("{} x {} along {}, corner {}, steps {}, {}", rays.width, rays.height,
                                    text(rays.sight), text(rays.corner), text(rays.right_step), text(rays.down_step));
   identity["ground height"] = fmt::format("{}", parts_->ground);

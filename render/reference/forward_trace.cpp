@@ -22,8 +22,8 @@ struct Layout {
   std::size_t bands, leaves, cells;  // leaves, cells: as many as are kept
   std::size_t direct_bands;          // of direct light: one for all bands where it is the same share in all, or each
 
-  enum Total { reflected, absorbed_leaves, absorbed_wood, absorbed_ground, arriving_ground };
-  static constexpr std::size_t kTotals = 5;
+  enum Total { reflected, absorbed_leaves, absorbed_wood, absorbed_ground, absorbed_particles, arriving_ground };
+  static constexpr std::size_t kTotals = 6;
   std::size_t total(Total which, int band) const { return which * bands + index(band); }
   std::size_t direct() const { return kTotals * bands; }
   std::size_t directBand(int band) const { return direct_bands == 1 ? 0 : index(band); }
@@ -77,7 +77,7 @@ class ForwardPaths {
     auto [from, direction, weight] = light_.enter<N>(random);
     int reflections = 0, passes = 0;
     for (int scatterings = 0;; ++scatterings) {
-      Hit hit = scene_.closest(from, direction, Coherence::incoherent);
+      Hit hit = scene_.meet(from, direction, random);
       const bool none = hit.surface == Surface::none;
       if (none) leave(direction.z >= 0.f ? Layout::upward : Layout::downward, weight, reflections, passes);
       if (none && direction.z >= 0.f) return;
@@ -94,17 +94,20 @@ class ForwardPaths {
       if (cells_ && absorber != Layout::absorbed_ground)
         keep(layout_.inCell(cells_->at(hit.position), absorber), arriving, weight);
       if (fate == Fate::absorbed) return;
-      if (hit.surface == Surface::leaf) ++(fate == Fate::passed ? passes : reflections);
+      if (isLeaf(hit.surface)) ++(fate == Fate::passed ? passes : reflections);
       from = scene_.leave(hit.position, onward.side);
       direction = onward.direction;
     }
   }
 
  private:
+  static bool isLeaf(Surface surface) { return surface == Surface::leaf || surface == Surface::turbid_leaf; }
+
   // What a surface keeps is what the path has lost there, so that no path makes or loses light.
   static typename Layout::Total absorbedBy(Surface surface) {
     if (surface == Surface::none) return Layout::absorbed_ground;
-    return surface == Surface::leaf ? Layout::absorbed_leaves : Layout::absorbed_wood;
+    if (isLeaf(surface)) return Layout::absorbed_leaves;
+    return surface == Surface::wood ? Layout::absorbed_wood : Layout::absorbed_particles;
   }
 
   void leave(typename Layout::Leaving how, const BandLanes<N>& weight, int reflections, int passes) {
@@ -192,7 +195,7 @@ std::size_t ForwardJob::bins() const {
 }
 
 TraceIdentity ForwardJob::identity() const {
-  TraceIdentity identity = identityOf(parts_->bands);
+  TraceIdentity identity = identityOf(parts_->bands, parts_->scene);
   identity["paths per unit"] = std::to_string(parts_->paths_per_unit);
   if (parts_->cells) identity["side of the cells"] = fmt::format("{}", parts_->cells->side());
   return identity;
@@ -222,6 +225,7 @@ std::vector<ForwardResult> ForwardJob::results(const TraceSums& sums) const {
     r.reflected = total(Layout::reflected);
     r.absorbed_leaves = total(Layout::absorbed_leaves);
     r.absorbed_wood = total(Layout::absorbed_wood);
+    if (parts_->scene.hasParticles()) r.absorbed_particles = total(Layout::absorbed_particles);
     r.arriving_ground = total(Layout::arriving_ground);
     r.arriving_ground_direct = sums.estimate(layout.direct() + layout.directBand(band));
     r.absorbed_ground = total(Layout::absorbed_ground);

@@ -20,14 +20,15 @@ namespace sunfleck {
 // A periodic stand is entered through the horizontal top of one period; a stand without period through the faces of the
 // box of its trees that the light comes to, the top and, but for light from overhead, the sides. Light that leaves
 // downward arrives at the ground, wherever it leaves the box; light that leaves upward is reflected. So reflected +
-// absorbed_leaves + absorbed_wood + absorbed_ground = 1; several bands under a sky share paths that are not drawn for
-// each alone, and keep to that within their standard errors.
+// absorbed_leaves + absorbed_wood + absorbed_particles + absorbed_ground = 1; several bands under a sky share paths
+// that are not drawn for each alone, and keep to that within their standard errors.
 struct ForwardResult {
   double sky_share = 0.;  // of the incident flux; the rest is the sun's
   Estimate reflected;
-  Estimate absorbed_leaves, absorbed_wood;
-  Estimate arriving_ground;         // every arrival counted, also after reflection by the ground itself
-  Estimate arriving_ground_direct;  // of these, the light that met nothing before
+  Estimate absorbed_leaves, absorbed_wood;     // turbid leaves of media are leaves
+  std::optional<Estimate> absorbed_particles;  // where a medium has particles
+  Estimate arriving_ground;                    // every arrival counted, also after reflection by the ground itself
+  Estimate arriving_ground_direct;             // of these, the light that met nothing before
   Estimate absorbed_ground;
   OrderTable reflected_by_order, arriving_ground_by_order;  // by scatterings by leaves
   // Of each leaf of the prototypes, kind after kind: irradiance per one-sided area, in the unit of the
@@ -56,7 +57,7 @@ struct ForwardDetail {
 };
 
 // (R1) Monte Carlo from the light (R19) to the leaves, all bands on one path. Leaves scatter by Lambert's law on both
-// sides, wood and ground on one. The ground lies at the bottom of the box.
+// sides or by (R20), wood and ground on one, media by (R14). The ground lies at the bottom of the box.
 class ForwardJob final : public TraceJob {
  public:
   //   scene  must outlive the job

@@ -37,6 +37,7 @@ void passCutLeaves(const RTCFilterFunctionNArguments* arguments) {
 // `cuts`: none where the triangles are whole.
 void attachTriangles(RTCDevice device, RTCScene scene, unsigned number, const std::vector<glm::vec3>& vertices,
                      const std::vector<glm::uvec3>& triangles, const glm::vec3& pivot, CutLeaves* cuts = nullptr) {
+  if (triangles.empty()) return;
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
                                          vertices.size());
@@ -121,6 +122,18 @@ float toWall(float position, float direction, float low, float high) {
   return std::max(0.f, ((direction > 0.f ? high : low) - position) / direction);
 }
 
+// Of all media; empty along the axes along which they have no end.
+Bounds boxOf(const std::vector<TraceMedium>& media) {
+  Bounds box;
+  for (const TraceMedium& medium : media) {
+    Bounds of_medium = occupied(medium);
+    for (int axis = 0; axis < 2; ++axis)
+      if (of_medium.high[axis] == kInfinity) std::swap(of_medium.low[axis], of_medium.high[axis]);
+    box.include(of_medium);
+  }
+  return box;
+}
+
 float largestCoordinate(const Bounds& box) {
   const glm::vec3 largest = glm::max(glm::abs(box.low), glm::abs(box.high));
   return std::max({largest.x, largest.y, largest.z});
@@ -128,8 +141,10 @@ float largestCoordinate(const Bounds& box) {
 
 }  // namespace
 
-RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood) {
-  StandCopies placed = standCopies(kinds, stand, with_wood);
+RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood,
+                             const std::vector<TraceMedium>& of_media) {
+  for (const TraceMedium& medium : of_media) validate(medium, stand.period);
+  StandCopies placed = standCopies(kinds, stand, with_wood, boxOf(of_media));
   origin = placed.origin;
   copies = std::move(placed.copies);
   period = stand.period;
@@ -144,6 +159,8 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
   lift = 8.f * std::numeric_limits<float>::epsilon() * largestCoordinate(coordinates);
   low = box.low.z - 4.f * lift;
   high = box.high.z + 4.f * lift;
+  for (const TraceMedium& medium : of_media) media.emplace_back(medium, origin, period);
+  media_hash = mediaHash(of_media);
 
   device.reset(rtcNewDevice(nullptr));
   if (!device) throw std::runtime_error("Embree error " + std::to_string(rtcGetDeviceError(nullptr)));
@@ -169,6 +186,7 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
       prototype.leaf_of_triangle.push_back(static_cast<std::uint32_t>(leaf_area.size()) + leaf);
     for (const double area : leafAreas(mesh)) leaf_area.push_back(area * trees[kind]);
   }
+  surfaces = std::any_of(prototypes.begin(), prototypes.end(), [](const auto& of) { return !of.planes.empty(); });
   checkEmbree();
   scenes = commit(std::move(made), RTC_SCENE_FLAG_NONE);
 }
@@ -201,9 +219,11 @@ Scenes RayScene::Geometry::commit(std::vector<EmbreeScene> of_kinds, RTCSceneFla
 RTCScene RayScene::Geometry::countingScene() const {
   std::call_once(counting_made, [&] {
     std::vector<EmbreeScene> leaves;
-    for (const EmbreeScene& prototype : scenes.prototypes)
-      rtcAttachGeometryByID(leaves.emplace_back(rtcNewScene(device.get())).get(),
-                            rtcGetGeometry(prototype.get(), kLeaves), kLeaves);
+    for (std::size_t kind = 0; kind < prototypes.size(); ++kind) {
+      RTCScene scene = leaves.emplace_back(rtcNewScene(device.get())).get();
+      if (!prototypes[kind].leaf_of_triangle.empty())
+        rtcAttachGeometryByID(scene, rtcGetGeometry(scenes.prototypes[kind].get(), kLeaves), kLeaves);
+    }
     counting = commit(std::move(leaves), RTC_SCENE_FLAG_ROBUST | kFilterPerCall);
   });
   return counting.root();
@@ -235,7 +255,7 @@ Hit RayScene::Geometry::describe(const RTCHit& hit, const glm::vec3& from, const
 
 Hit RayScene::Geometry::closest(const glm::vec3& from, const glm::vec3& direction, Coherence coherence,
                                 float reach) const {
-  if (period) return closestInPeriods(from, direction, coherence);
+  if (period) return closestInPeriods(from, direction, coherence, media.empty() ? kInfinity : reach);
   RTCRayHit ray = rayFrom(from, direction, reach);
   closestHit(scenes.root(), ray, coherence);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
@@ -301,12 +321,13 @@ glm::vec3 RayScene::Geometry::wrapped(glm::vec3 point) const {
   return point;
 }
 
-// Moves a point above or below the layer to where its ray enters it; false if it never does.
-bool RayScene::Geometry::enterLayer(glm::vec3& point, const glm::vec3& direction) const {
+// Moves a point above or below the layer to where its ray enters it, and its reach with it; false if it never does.
+bool RayScene::Geometry::enterLayer(glm::vec3& point, const glm::vec3& direction, float& reach) const {
   if (point.z > high || point.z < low) {
     const float face = point.z > high ? high : low;
     const float distance = (face - point.z) / direction.z;
     if (!(distance >= 0.f && distance < kInfinity)) return false;
+    reach -= distance;
     point += distance * direction;
     point.z = face;
   }
@@ -334,12 +355,15 @@ void throughPeriods(const RayScene::Geometry& scene, glm::vec3 point, const glm:
 
 }  // namespace
 
-Hit RayScene::Geometry::closestInPeriods(glm::vec3 point, const glm::vec3& direction, Coherence coherence) const {
+Hit RayScene::Geometry::closestInPeriods(glm::vec3 point, const glm::vec3& direction, Coherence coherence,
+                                         float reach) const {
   Hit hit;
-  if (!enterLayer(point, direction)) return hit;
+  if (!surfaces || !enterLayer(point, direction, reach)) return hit;
   throughPeriods(*this, point, direction, [&](const glm::vec3& from, float length) {
-    RTCRayHit ray = rayFrom(from, direction, length);
+    if (reach <= 0.f) return true;
+    RTCRayHit ray = rayFrom(from, direction, std::min(length, reach));
     closestHit(scenes.root(), ray, coherence);
+    reach -= length;
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     hit = describe(ray.hit, from, direction, ray.ray.tfar);
     return true;
@@ -349,7 +373,8 @@ Hit RayScene::Geometry::closestInPeriods(glm::vec3 point, const glm::vec3& direc
 
 bool RayScene::Geometry::blockedInPeriods(glm::vec3 point, const glm::vec3& direction) const {
   bool found = false;
-  if (!enterLayer(point, direction)) return found;
+  float reach = kInfinity;
+  if (!surfaces || !enterLayer(point, direction, reach)) return found;
   throughPeriods(*this, point, direction, [&](const glm::vec3& from, float length) {
     RTCRay ray;
     set(ray, from, direction, length);
@@ -384,11 +409,18 @@ void noteAndReject(const RTCFilterFunctionNArguments* arguments) {
 
 }  // namespace
 
-RayScene::RayScene(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood)
-    : geometry_(std::make_unique<Geometry>(kinds, stand, with_wood)) {}
+RayScene::RayScene(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood,
+                   const std::vector<TraceMedium>& media)
+    : geometry_(std::make_unique<Geometry>(kinds, stand, with_wood, media)) {}
 
 RayScene::RayScene(const TreeMesh& mesh, const Stand& stand, bool with_wood)
     : RayScene(std::array{&mesh}, stand, with_wood) {}
+
+RayScene::RayScene(const std::vector<TraceMedium>& media, const std::optional<glm::vec2>& period) {
+  const TreeMesh nothing;
+  geometry_ =
+      std::make_unique<Geometry>(std::array<const TreeMesh*, 1>{&nothing}, Stand{.period = period}, false, media);
+}
 
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;

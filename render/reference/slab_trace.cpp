@@ -9,6 +9,7 @@
 #include "core/elapsed.hpp"
 #include "core/require.hpp"
 #include "render/reference/detail/absorption.hpp"
+#include "render/reference/detail/henyey_greenstein.hpp"
 #include "render/reference/trace_job.hpp"
 #include "render/reference/trace_run.hpp"
 
@@ -22,19 +23,6 @@ constexpr double kPi = std::numbers::pi;
 glm::dvec3 travel(double mu, double azimuth) {
   const double sine = std::sqrt((1. - mu) * (1. + mu));
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), mu};
-}
-
-// Probability of scattering by an angle of this cosine [1/sr].
-double phase(double g, double cosine) {
-  const double base = (1. - g) * (1. - g) + 2. * g * (1. - cosine);
-  return (1. - g * g) / (4. * kPi * base * std::sqrt(base));
-}
-
-// The distribution function of Henyey and Greenstein inverted, with t = 2 u - 1 in -1 .. 1 and no division by g.
-double sampledCosine(double g, double t) {
-  const double base = 1. + g * t;
-  const double cosine = (2. * t + g * (3. + t * t + g * (2. * t + g * (t * t - 1.)))) / (2. * base * base);
-  return std::clamp(cosine, -1., 1.);
 }
 
 // `direction` turned by an angle of this cosine, about itself by `turn`. The axes are those of Duff et al. 2017.
@@ -105,7 +93,7 @@ class SlabPaths {
       const SlabView& view = measures_.views[i];
       const double way = (view.depth - depth) / view.mu;
       if (way < 0.) continue;
-      const double towards = phase(slab_.asymmetry, glm::dot(direction, views_[i]));
+      const double towards = henyeyGreenstein(slab_.asymmetry, glm::dot(direction, views_[i]));
       count(layout_.radiance(i), scattered * towards * std::exp(-way) / std::abs(view.mu));
     }
   }

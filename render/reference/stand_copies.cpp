@@ -44,7 +44,8 @@ Copy rotation(const Placement& tree) {
 
 // Whole multiples of 64 m, far from a mesh's middle only: none for trees that grow where they are.
 glm::vec3 pivotOf(const TreeMesh& mesh) {
-  return 64.f * glm::round(bounds(mesh).centre() / 64.f);
+  const Bounds box = bounds(mesh);
+  return box.empty() ? glm::vec3(0.f) : 64.f * glm::round(box.centre() / 64.f);
 }
 
 // What the box of a prototype, turned about z in any way, follows from: the corners of the convex hull seen from above.
@@ -114,7 +115,8 @@ Shifts shifts(float low, float high, float cell_low, float period) {
 
 }  // namespace
 
-StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood) {
+StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood,
+                        const Bounds& others) {
   validate(kinds.size(), stand);
   StandCopies result;
   std::vector<Outline> outlines;  // of each kind
@@ -125,7 +127,7 @@ StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& sta
   std::vector<Copy> rotations;
   std::vector<Bounds> boxes;  // of each tree about its home
   std::vector<glm::dvec3> homes;
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  glm::dvec3 low(others.low), high(others.high);
   for (const Placement& tree : stand.trees) {
     rotations.push_back(rotation(tree));
     boxes.push_back(rotatedBox(outlines[tree.kind], rotations.back()));
@@ -133,6 +135,10 @@ StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& sta
     low = glm::min(low, homes.back() + glm::dvec3(boxes.back().low));
     high = glm::max(high, homes.back() + glm::dvec3(boxes.back().high));
   }
+
+  require(low.z <= high.z, "number of leaves and pieces of wood", 0, "at least 1: nothing is to be met");
+  for (int axis = 0; axis < 2; ++axis)
+    if (low[axis] > high[axis]) low[axis] = high[axis] = 0.;
 
   // A single upright copy is traced as the mesh stands, without an instance: so its own origin is the best one.
   const bool single = stand.trees.size() == 1 && stand.trees[0].rotation == 0.f;
@@ -142,6 +148,9 @@ StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& sta
   };
   for (std::size_t i = 0; i < boxes.size(); ++i)
     result.box.include({.low = boxes[i].low + fromOrigin(homes[i]), .high = boxes[i].high + fromOrigin(homes[i])});
+  result.box.include({.low = others.low - result.origin, .high = others.high - result.origin});
+  for (int axis = 0; axis < 2; ++axis)
+    if (result.box.low[axis] > result.box.high[axis]) result.box.low[axis] = result.box.high[axis] = 0.f;
   if (stand.period)
     for (int axis = 0; axis < 2; ++axis) {
       result.box.low[axis] = result.box.centre()[axis] - 0.5f * (*stand.period)[axis];
@@ -151,7 +160,7 @@ StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& sta
   for (std::size_t i = 0; i < stand.trees.size(); ++i) {
     Copy copy = rotations[i];
     const glm::vec3 home = fromOrigin(homes[i]);
-    if (!stand.period) {
+    if (!stand.period || boxes[i].empty()) {
       copy.translation = home;
       result.copies.push_back(copy);
       continue;

@@ -35,6 +35,7 @@ void validate(const TraceLight& light) {
   };
   validateTree({light.leaf, light.wood_reflectance});
   for (const TreeOptics& tree : light.of_kinds) validateTree(tree);
+  for (const LeafOptics& medium : light.of_media) validate(medium);
   require(light.ground_albedo >= 0.f && light.ground_albedo <= 1.f, "ground albedo", light.ground_albedo, "in [0, 1]");
   if (light.ground_rpv) validate(*light.ground_rpv);
   if (light.ground_texture) validate(*light.ground_texture);
@@ -58,6 +59,8 @@ void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene)
     if (light.sun_diameter != bands.front().sun_diameter)
       throw InvalidInput("diameter of the sun: must be the same in all bands");
     if (light.sky != bands.front().sky) throw InvalidInput("sky: must be the same in all bands");
+    require(light.of_media.size() == scene.geometry().media.size(), "number of media with optics",
+            light.of_media.size(), "that of the traced scene, " + std::to_string(scene.geometry().media.size()));
     if (light.sun != bands.front().sun) throw InvalidInput("sun: must be the same in all bands");
     const TraceLight& first = bands.front();
     const auto shape = [](const TraceLight& of) {

@@ -35,6 +35,8 @@ struct TraceLight {
   std::optional<RpvGround> ground_rpv{};
   std::shared_ptr<const GroundTexture> ground_texture{};  // of the stand's x and y; of a periodic stand those of the
                                                           // period in the middle, which the ground repeats
+  // Of each medium of the scene: its leaves' reflectance and transmittance; of particles their sum, the albedo, counts.
+  std::vector<LeafOptics> of_media{};
 
   // The largest share of light that the ground sends back from any direction [1].
   float largestGroundAlbedo() const;
@@ -52,8 +54,8 @@ inline constexpr float kLeastSunDiameter = 0.00436332f, kMostSunDiameter = 1.047
 // Throws InvalidInput on a value out of its range, a sun that does not shine down with all of its disc or is no unit
 // vector, and on a band without light.
 void validate(const TraceLight& light);
-// Validates all bands; demands 1 to kMostBands of one sun and one sky, with optics of each kind of tree; the gloss of a
-// kind must be as rough in all bands.
+// Validates all bands; demands 1 to kMostBands of one sun and one sky, with optics of each kind of tree and of each
+// medium; the gloss of a kind must be as rough in all bands.
 void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene);
 
 }  // namespace sunfleck

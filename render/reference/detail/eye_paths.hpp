@@ -16,12 +16,12 @@ namespace sunfleck::detail {
 // seen and by how often its light has been scattered.
 template <int N>
 struct Seen {
-  BandLanes<N> leaf_once, wood_once, ground_once, more;
-  BandLanes<N> light;  // the sky or the sun's disc itself, never scattered
+  BandLanes<N> leaf_once, wood_once, ground_once, more;  // what media hold counts as leaves
+  BandLanes<N> light;                                    // the sky or the sun's disc itself, never scattered
 
   BandLanes<N>& once(Surface surface) {
     if (surface == Surface::none) return ground_once;
-    return surface == Surface::leaf ? leaf_once : wood_once;
+    return surface == Surface::wood ? wood_once : leaf_once;
   }
 };
 
@@ -51,7 +51,10 @@ class EyePaths {
     std::array<glm::vec3, kPacket> lit;  // where light from the sun would come in
     std::array<bool, kPacket> dark;
     for (std::size_t i = 0; i < count; ++i) to_ground[i] = toGround(from[i], sight);
-    scene_.closest(from, sight, std::span(to_ground).first(count), std::span(hits).first(count));
+    if (scene_.media.empty())
+      scene_.closest(from, sight, std::span(to_ground).first(count), std::span(hits).first(count));
+    else
+      lookIntoMedia(from, sight, random, to_ground, hits);
     for (std::size_t i = 0; i < count; ++i) {
       seen[i] = {};
       dark[i] = !meets(hits[i], from[i], sight, to_ground[i]) || !sendsSun(hits[i], lit[i]);
@@ -63,7 +66,7 @@ class EyePaths {
         continue;
       }
       const BandLanes<N> weight = BandLanes<N>::all(1.f);
-      if (!dark[i]) addSun(hits[i], sight, weight, seen[i].once(hits[i].surface));
+      if (!dark[i]) addSun(hits[i], sight, lit[i], weight, seen[i].once(hits[i].surface));
       if (wide_) addDrawn(hits[i], sight, weight, random[i], seen[i].once(hits[i].surface));
       goOn(hits[i], sight, weight, random[i], seen[i]);
     }
@@ -86,6 +89,21 @@ class EyePaths {
 
  private:
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+  // What is met first along parallel lines of sight where there are media.
+  void lookIntoMedia(std::span<const glm::vec3> from, const Direction& sight, std::span<PathRandom> random,
+                     std::span<const float> to_ground, std::span<Hit> hits) const {
+    std::array<RayScene::Geometry::Flight, RayScene::Geometry::kPacket> flights;
+    std::array<float, RayScene::Geometry::kPacket> reach;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      flights[i] = scene_.fly(from[i], sight, random[i]);
+      reach[i] = std::min(to_ground[i], flights[i].distance);
+    }
+    scene_.closest(from, sight, std::span(reach).first(from.size()), hits.first(from.size()));
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (hits[i].surface == Surface::none && flights[i].distance < to_ground[i])
+        hits[i] = scene_.collide(flights[i], from[i], sight, random[i]);
+  }
 
   // Distance to the ground along a ray, infinite if it meets none.
   float toGround(const glm::vec3& from, const glm::vec3& direction) const {
@@ -114,13 +132,13 @@ class EyePaths {
       const glm::vec3 from = scene_.leave(hit.position, onward.side);
       direction = onward.direction;
       const float to_ground = toGround(from, direction);
-      hit = scene_.closest(from, direction, Coherence::incoherent, to_ground);
+      hit = scene_.meet(from, direction, random, to_ground);
       if (!meets(hit, from, direction, to_ground)) {
         if (wide_) addMet(direction, density, weight, scatterings == 1 ? seen.once(first) : seen.more);
         return;
       }
       glm::vec3 lit;
-      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, direction, weight, seen.more);
+      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, direction, lit, weight, seen.more);
       if (wide_) addDrawn(hit, direction, weight, random, seen.more);
     }
   }
@@ -135,8 +153,11 @@ class EyePaths {
     return true;
   }
 
-  void addSun(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight, BandLanes<N>& seen) const {
-    const BandLanes<N> sent = optics_.sent(hit, direction, to_sun_);
+  // `lit`: where the light comes in.
+  void addSun(const Hit& hit, const glm::vec3& direction, const glm::vec3& lit, const BandLanes<N>& weight,
+              BandLanes<N>& seen) const {
+    BandLanes<N> sent = optics_.sent(hit, direction, to_sun_);
+    if (!scene_.media.empty()) sent *= scene_.transmittance(lit, to_sun_);
     for (int band = 0; band < N; ++band) seen[band] += weight[band] * sent[band] * sun_[band];
   }
 
@@ -150,7 +171,9 @@ class EyePaths {
       arriving *= drawn.radiance;
       if (!(arriving.largest() > 0.f)) return;
       const glm::vec3 side = glm::dot(hit.normal, drawn.to_light) > 0.f ? hit.normal : -hit.normal;
-      if (scene_.blocked(scene_.leave(hit.position, side), drawn.to_light)) return;
+      const glm::vec3 lit = scene_.leave(hit.position, side);
+      if (scene_.blocked(lit, drawn.to_light)) return;
+      if (!scene_.media.empty()) arriving *= scene_.transmittance(lit, drawn.to_light);
       arriving *= 1.f / (drawn.density + optics_.density(hit, direction, weight, drawn.to_light));
       for (int band = 0; band < N; ++band) seen[band] += arriving[band];
     });

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/trace_job.hpp"
 #include "render/reference/trace_light.hpp"
 
@@ -47,6 +48,17 @@ inline TraceIdentity identityOf(const std::vector<TraceLight>& bands) {
                                   bands.front().sun_diameter, bands.front().sky ? bands.front().sky->hash() : "none");
   for (const TraceLight& band : bands) light += fmt::format(" {} {};", band.sun_irradiance, band.sky_band);
   return {{"light", light}, {"sun", fmt::format("{} {} {}", sun.x, sun.y, sun.z)}, {"optics", optics}};
+}
+
+// The same in a scene, with what is in its media.
+inline TraceIdentity identityOf(const std::vector<TraceLight>& bands, const RayScene::Geometry& scene) {
+  TraceIdentity identity = identityOf(bands);
+  if (scene.media.empty()) return identity;
+  identity["media"] = scene.media_hash;
+  for (const TraceLight& light : bands)
+    for (const LeafOptics& medium : light.of_media)
+      identity["optics of media"] += fmt::format("{} {}; ", medium.reflectance, medium.transmittance);
+  return identity;
 }
 
 }  // namespace sunfleck::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -14,22 +15,23 @@
 #include <vector>
 
 #include "render/reference/detail/embree_calls.hpp"
+#include "render/reference/detail/medium_field.hpp"
 #include "render/reference/detail/stand_copies.hpp"
 #include "render/reference/ray_scene.hpp"
 
 namespace sunfleck {
 namespace detail {
 
-enum class Surface { none, leaf, wood };
+enum class Surface { none, leaf, wood, turbid_leaf, particle };
 
 // What a ray meets first.
 struct Hit {
   Surface surface = Surface::none;
-  std::uint32_t kind = 0;   // of the tree
+  std::uint32_t kind = 0;   // of the tree; in a medium: which
   std::uint32_t leaf = 0;   // when a leaf: among those of all kinds, one kind after the other
   glm::vec3 position{0.f};  // on the surface; in a periodic stand inside the traced period [m]
   bool front = true;        // whether the ray came from the side that the corners turn about counter-clockwise
-  glm::vec3 normal{0.f};    // unit, geometric, on the side the ray came from
+  glm::vec3 normal{0.f};    // unit, geometric, on the side the ray came from; of a particle: back along the ray
 };
 
 struct ReleaseDevice {
@@ -69,10 +71,11 @@ inline constexpr int kMostPeriods = 10'000;
 
 // Embree's view of a stand. All positions are relative to `origin`.
 struct RayScene::Geometry {
-  Geometry(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood);
+  Geometry(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood,
+           const std::vector<TraceMedium>& of_media);
 
   // First surface on the way from `from` along the unit vector `direction`, no farther than `reach` [m], which counts
-  // in stands without period alone.
+  // in stands without period and in those with media.
   detail::Hit closest(const glm::vec3& from, const glm::vec3& direction, detail::Coherence coherence,
                       float reach = std::numeric_limits<float>::infinity()) const;
   // Whether anything stands on that way.
@@ -84,6 +87,29 @@ struct RayScene::Geometry {
                std::span<detail::Hit> hits) const;
   // `blocked` of rays that are so already is not asked for.
   void blocked(std::span<const glm::vec3> from, const glm::vec3& direction, std::span<bool> blocked) const;
+
+  // (R14) Where a path meets something in a medium, whatever surfaces may stand before.
+  struct Flight : detail::Collision {
+    std::uint32_t medium = 0;
+  };
+  Flight fly(const glm::vec3& from, const glm::vec3& direction, detail::PathRandom& random) const;
+  // What it meets there.
+  detail::Hit collide(const Flight& flight, const glm::vec3& from, const glm::vec3& direction,
+                      detail::PathRandom& random) const;
+  // The first that a path meets: surface or something in a medium.
+  detail::Hit meet(const glm::vec3& from, const glm::vec3& direction, detail::PathRandom& random,
+                   float reach = std::numeric_limits<float>::infinity()) const {
+    if (media.empty()) return closest(from, direction, detail::Coherence::incoherent, reach);
+    const Flight flight = fly(from, direction, random);
+    const detail::Hit hit = closest(from, direction, detail::Coherence::incoherent, std::min(reach, flight.distance));
+    return hit.surface == detail::Surface::none && flight.distance < reach ? collide(flight, from, direction, random)
+                                                                           : hit;
+  }
+  // Share of the light that all media let through along that way [1].
+  float transmittance(const glm::vec3& from, const glm::vec3& direction) const;
+  bool hasParticles() const {
+    return std::any_of(media.begin(), media.end(), [](const detail::MediumField& field) { return !field.leaves(); });
+  }
 
   // Start of a ray that leaves a surface on the side `normal` points to. A hit lies on its triangle's plane to within
   // about one rounding step of the largest coordinate, so a lift of eight steps puts it safely on the right side: no
@@ -107,6 +133,9 @@ struct RayScene::Geometry {
   std::vector<detail::Prototype> prototypes;  // of each kind
   std::vector<double>
       leaf_area;  // of each leaf of all kinds, summed over the trees without their periodic copies [m^2]
+  std::vector<detail::MediumField> media;
+  std::string media_hash;           // of all that is in them
+  bool surfaces = true;             // whether there are any at all
   std::optional<glm::vec2> period;  // [m]
   Bounds stand_box;                 // what RayScene::box tells, in the stand's coordinates
   Bounds box;                       // the same about `origin`
@@ -117,9 +146,10 @@ struct RayScene::Geometry {
   void checkEmbree() const;  // throws std::runtime_error if Embree has reported an error
   detail::Scenes commit(std::vector<detail::EmbreeScene> made, RTCSceneFlags flags) const;
   detail::Hit describe(const RTCHit& hit, const glm::vec3& from, const glm::vec3& direction, float distance) const;
-  detail::Hit closestInPeriods(glm::vec3 point, const glm::vec3& direction, detail::Coherence coherence) const;
+  detail::Hit closestInPeriods(glm::vec3 point, const glm::vec3& direction, detail::Coherence coherence,
+                               float reach) const;
   bool blockedInPeriods(glm::vec3 point, const glm::vec3& direction) const;
-  bool enterLayer(glm::vec3& point, const glm::vec3& direction) const;
+  bool enterLayer(glm::vec3& point, const glm::vec3& direction, float& reach) const;
 };
 
 }  // namespace sunfleck

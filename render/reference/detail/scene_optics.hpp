@@ -11,6 +11,7 @@
 #include "render/reference/detail/cosine_law.hpp"
 #include "render/reference/detail/glossy_leaf.hpp"
 #include "render/reference/detail/ground_surface.hpp"
+#include "render/reference/detail/medium_optics.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/trace_light.hpp"
@@ -23,7 +24,9 @@ class SceneOptics {
  public:
   // `scene` must outlive it.
   SceneOptics(const std::vector<TraceLight>& bands, const RayScene::Geometry& scene)
-      : of_kinds_(scene.prototypes.size()), ground_beyond_lambert_(GroundSurface<N>::of(bands, scene)) {
+      : of_kinds_(scene.prototypes.size()),
+        media_(bands, scene),
+        ground_beyond_lambert_(GroundSurface<N>::of(bands, scene)) {
     const std::size_t kinds = of_kinds_.size();
     for (std::size_t b = 0; b < bands.size(); ++b) {
       const int band = static_cast<int>(b);
@@ -42,7 +45,7 @@ class SceneOptics {
       of_kinds_[kind].glossy.emplace(bands, number);
       of_kinds_[kind].leaf = of_kinds_[kind].glossy->bounds();
     }
-    lambert_ = !ground_beyond_lambert_ &&
+    lambert_ = !ground_beyond_lambert_ && !scene.hasParticles() &&
                std::none_of(of_kinds_.begin(), of_kinds_.end(), [](const Kind& k) { return k.glossy.has_value(); });
   }
 
@@ -50,7 +53,8 @@ class SceneOptics {
   // it is a bound: where it is 0, nothing is sent.
   const SurfaceOptics<N>& of(const Hit& hit) const {
     if (hit.surface == Surface::none) return ground_;
-    return hit.surface == Surface::leaf ? of_kinds_[hit.kind].leaf : of_kinds_[hit.kind].wood;
+    if (hit.surface == Surface::leaf) return of_kinds_[hit.kind].leaf;
+    return hit.surface == Surface::wood ? of_kinds_[hit.kind].wood : media_.of(hit);
   }
   const SurfaceOptics<N>& ground() const { return ground_; }
 
@@ -59,6 +63,7 @@ class SceneOptics {
     if (!lambert_) [[unlikely]] {
       if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->scatter(hit.normal, arriving, weight, random);
       if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->scatter(hit, arriving, weight, random);
+      if (hit.surface == Surface::particle) return media_.scatter(hit, weight, random);
     }
     Onward onward{.fate = detail::scatter(of(hit), weight, random)};
     if (onward.fate == Fate::absorbed) return onward;
@@ -74,6 +79,7 @@ class SceneOptics {
     if (!lambert_) [[unlikely]] {
       if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->sent(hit.normal, arriving, to_light);
       if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->sent(hit, arriving, to_light);
+      if (hit.surface == Surface::particle) return media_.sent(hit, to_light);
     }
     const float cosine = glm::dot(hit.normal, to_light);
     BandLanes<N> share = cosine > 0.f ? of(hit).reflectance : of(hit).transmittance;
@@ -88,6 +94,7 @@ class SceneOptics {
     if (!lambert_) [[unlikely]] {
       if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->density(hit.normal, arriving, weight, direction);
       if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->density(direction);
+      if (hit.surface == Surface::particle) return media_.density(hit, direction);
     }
     const float reflected = dot(weight, of(hit).reflectance), passed = dot(weight, of(hit).transmittance);
     if (!(reflected + passed > 0.f)) return 0.f;
@@ -112,6 +119,7 @@ class SceneOptics {
 
   std::vector<Kind> of_kinds_;
   SurfaceOptics<N> ground_;
+  MediumOptics<N> media_;
   std::optional<GroundSurface<N>> ground_beyond_lambert_;
   bool lambert_ = true;  // whether all scatter by Lambert's law, everywhere alike
 };

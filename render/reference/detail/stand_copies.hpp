@@ -34,6 +34,8 @@ struct StandCopies {
 
 // The placements and, in a periodic stand, their copies shifted by whole periods as far as they reach into the period
 // around the stand's middle. Throws InvalidInput as RayScene's constructor does.
-StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood);
+//   others  box of what else can be met [m]; empty along an axis along which that has no end
+StandCopies standCopies(std::span<const TreeMesh* const> kinds, const Stand& stand, bool with_wood,
+                        const Bounds& others);
 
 }  // namespace sunfleck::detail

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "render/detail/scene_table.hpp"
+#include "render/scene.hpp"
+
+namespace sunfleck::detail {
+
+// Adds to a scene what a table [medium], or the tables [[medium]], of its file say. `optics`: of leaves, unless they
+// have their own. Throws InvalidInput as readScene() does.
+void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, const std::filesystem::path& file);
+
+}  // namespace sunfleck::detail
