@@ -16,6 +16,7 @@
 #include "apps/pictures.hpp"
 #include "apps/scene_options.hpp"
 #include "apps/slab_options.hpp"
+#include "apps/team.hpp"
 #include "apps/terminal.hpp"
 #include "apps/trace_output.hpp"
 #include "apps/version.hpp"
@@ -28,6 +29,7 @@
 #include "render/reference/brf_trace.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
+#include "render/reference/team_run.hpp"
 #include "render/reference/trace_goal.hpp"
 
 namespace sunfleck::apps {
@@ -100,14 +102,6 @@ TraceIdentity identityOf(const Scene& scene, bool with_wood) {
           {"wood", with_wood ? "with" : "without"}};
 }
 
-// A size of a unit that a run began with is kept, whatever it is told on going on.
-std::uint64_t unitSize(const TraceIdentity* begun, const std::string& name, std::uint64_t fresh) {
-  if (!begun || !begun->contains(name)) return fresh;
-  const std::string& text = begun->at(name);
-  std::from_chars(text.data(), text.data() + text.size(), fresh);
-  return fresh;
-}
-
 class TraceRun {
  public:
   TraceRun(const TraceOptions& options, const RunOptions& run, const Scene& scene)
@@ -119,13 +113,14 @@ class TraceRun {
     if (!options.other_leaf.empty()) traced_leaf_ = leafOfAll(scene, options);
     for (int band = 0; band < kBands; ++band)
       if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
-    if (!options.checkpoint.empty())
+    if (run.team) requireSameAtAll(*run.team, identityOf(scene, !options.without_wood));
+    if (!options.checkpoint.empty() && !(run.team && run.team->rank() > 0))
       store_ = TraceStore(options.checkpoint, options.write_every, identityOf(scene, !options.without_wood));
   }
 
   void light() {
     const auto paths = static_cast<std::uint64_t>(options_.paths.value_or(extent_.target > 0. ? kMostPaths : kPaths));
-    const std::uint64_t per_unit = unitSize(store_.identity("light"), "paths per unit", pathsPerUnit(paths));
+    const std::uint64_t per_unit = unitSize("light", "paths per unit", pathsPerUnit(paths));
     const ForwardJob job(rays_, bands_, per_unit);
     TraceSection& section = store_.section("light", job);
     const std::uint64_t units = unitsOf(paths, per_unit);
@@ -163,7 +158,7 @@ class TraceRun {
     const PixelRays pixels = pixelRays(scene_);
     const auto samples = static_cast<std::uint64_t>(options_.samples);
     const std::uint64_t per_unit =
-        unitSize(store_.identity("picture"), "samples per unit", static_cast<std::uint64_t>(samplesPerUnit(samples)));
+        unitSize("picture", "samples per unit", static_cast<std::uint64_t>(samplesPerUnit(samples)));
     const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit));
     TraceSection& section = store_.section("picture", job);
     const Spent spent = workOnGroups(job, job.unitsOf(samples), section, "tracing the picture");
@@ -187,7 +182,7 @@ class TraceRun {
     std::vector<ViewDirection> directions;
     for (const BrfView& view : views) directions.push_back(view.direction);
     const auto paths = static_cast<std::uint64_t>(options_.brf.paths);
-    const std::uint64_t per_unit = unitSize(store_.identity("brf"), "paths per unit", pathsPerUnit(paths));
+    const std::uint64_t per_unit = unitSize("brf", "paths per unit", pathsPerUnit(paths));
     const BrfJob job(rays_, bands_, directions, per_unit);
     TraceSection& section = store_.section("brf", job);
     const Spent spent = workOnGroups(job, job.unitsOf(paths), section, "tracing reflectance factors");
@@ -233,16 +228,25 @@ class TraceRun {
     double seconds = 0., cpu_seconds = 0.;
   };
 
+  // A size of a unit that a run began with is kept, whatever it is told on going on. Rank 0 knows.
+  std::uint64_t unitSize(const std::string& section, const std::string& name, std::uint64_t fresh) {
+    const TraceIdentity* begun = store_.identity(section);
+    std::string text = begun && begun->contains(name) ? begun->at(name) : std::to_string(fresh);
+    if (run_.team) text = run_.team->fromFirst(std::move(text));
+    std::from_chars(text.data(), text.data() + text.size(), fresh);
+    return fresh;
+  }
+
   Spent work(const TraceGoal& goal, const TraceJob& job, TraceSection& section, const std::string& label) {
     Spent spent{.units_before = section.sums.units()};
     TraceGoal timed = goal;
     timed.seconds = extent_.seconds - begun_.seconds();
     const Elapsed elapsed;
-    if (!pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet)) &&
-        !interrupted())
+    if (!pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet), run_.team) &&
+        !interruptedAnywhere(run_.team))
       fmt::print(stderr, "sunfleck: {}: ended by --time before all was done\n", label);
     spent.seconds = elapsed.seconds();
-    spent.cpu_seconds = elapsed.cpuSeconds();
+    spent.cpu_seconds = sumOverRanks(run_.team, elapsed.cpuSeconds());
     spent.units = section.sums.units();
     return spent;
   }
@@ -351,8 +355,10 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   TraceRun trace(options, run, scene);
   if (!options.only_picture && !options.brf.only) trace.light();
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
-  if (pictured && !options.brf.only && !interrupted()) trace.picture();
-  if (!views.empty() && !interrupted()) trace.brf(views);
+  if (pictured && !options.brf.only && !interruptedAnywhere(run.team)) trace.picture();
+  if (!views.empty() && !interruptedAnywhere(run.team)) trace.brf(views);
+  const bool ended_early = interruptedAnywhere(run.team);
+  if (run.team && run.team->rank() > 0) return 0;
   if (!reference.empty()) trace.compare(std::move(reference));
 
   if (run.json) fmt::print("{}\n", trace.json().dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
@@ -360,8 +366,8 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
        {options.leaves, options.picture, options.brf.csv, options.brf.mes, options.checkpoint})
     if (!file.empty() && !run.json && std::filesystem::exists(file)) fmt::print("wrote {}\n", file);
   if (!trace.failure().empty()) fmt::print(stderr, "sunfleck: {}\n", trace.failure());
-  if (interrupted()) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
-  return interrupted() || !trace.failure().empty() ? 1 : 0;
+  if (ended_early) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
+  return ended_early || !trace.failure().empty() ? 1 : 0;
 }
 
 }  // namespace
@@ -371,7 +377,8 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   CLI::App* command =
       addCommand(app, options, "trace",
                  "Monte Carlo: where the sun's light ends up, leaf by leaf, with standard errors; and what a "
-                 "camera sees of it");
+                 "camera sees of it. mpirun -n N sunfleck trace ... computes the same by N processes",
+                 Ranks::any);
   addSceneOptions(*command, trace->scene);
   addCameraOptions(*command, trace->camera, "--look-at");
   command

@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# Runs the program as several ranks: they must find, to the last bit, what one process finds, also when they are killed
+# or stopped and go on. Usage: ranks.sh PATH_TO_SUNFLECK PATH_TO_MPIRUN
+set -u
+program=$(readlink -f "$1")
+mpirun=$2
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+cd "$place" || exit 1
+failures=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+
+# As root, on fewer cores than ranks and where one process may not read another's memory, as in a container.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+export OMPI_MCA_btl_vader_single_copy_mechanism=none
+ranks() { local count=$1; shift; "$mpirun" -n "$count" "$program" "$@" </dev/null; }
+shares() { grep -v seconds "$1"; }
+
+printf 'v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nusemtl leaf\nf 1 2 3 4\n' >leaf.obj
+run="trace leaf.obj --period 2 2 --paths 4e5 --samples 16 --size 40 30 --json --threads 1"
+all="$run --brf 0:60:60 --brf-paths 2000"
+"$program" $all --checkpoint alone.trace >alone.json || fail "$all"
+for count in 2 3; do
+  ranks $count $all --checkpoint ranks.trace --picture ranks.exr --leaves ranks.csv >ranks.json 2>stderr.txt ||
+    fail "$count ranks: $(cat stderr.txt)"
+  [ "$(shares ranks.json)" = "$(shares alone.json)" ] || fail "$count ranks: $(diff ranks.json alone.json)"
+  cmp -s ranks.trace alone.trace || fail "$count ranks: the checkpoint differs"
+  [ -s ranks.exr ] && [ -s ranks.csv ] || fail "$count ranks: a file is missing"
+  rm -f ranks.*
+done
+"$program" $run --target 1% >alone_target.json || fail "--target"
+ranks 2 $run --target 1% >target.json 2>stderr.txt || fail "--target over ranks: $(cat stderr.txt)"
+[ "$(shares target.json)" = "$(shares alone_target.json)" ] || fail "--target: $(diff target.json alone_target.json)"
+
+# Killed and stopped in the middle it goes on, also as another number of ranks.
+long="trace leaf.obj --period 2 2 --paths 1e7 --json --threads 1"
+"$program" $long --checkpoint long.trace >long.json || fail "$long"
+cut=0
+for signal in KILL TERM INT; do
+  timeout -s $signal 1 "$mpirun" -n 2 "$program" $long --checkpoint cut.trace --write-every 0 >/dev/null 2>&1 </dev/null
+  [ $? -ne 0 ] && [ -e cut.trace ] && ! cmp -s cut.trace long.trace && cut=$((cut + 1))
+  for _ in $(seq 100); do [ -e cut.trace.lock ] || break; sleep 0.1; done  # ranks outlive an mpirun that is killed
+done 2>/dev/null
+[ $cut -gt 0 ] || fail "no run was cut in the middle"
+ranks 3 $long --checkpoint cut.trace >cut.json 2>stderr.txt || fail "going on: $(cat stderr.txt)"
+[ "$(shares cut.json)" = "$(shares long.json)" ] || fail "going on: $(diff cut.json long.json)"
+cmp -s cut.trace long.trace || fail "going on: the checkpoint differs"
+
+# A mistake is told once; a rank that dies ends all.
+ranks 2 trace nowhere >stdout.txt 2>stderr.txt
+[ $? -eq 2 ] || fail "a wrong scene: not status 2"
+[ "$(grep -c "^sunfleck: " stderr.txt)" -eq 1 ] || fail "a wrong scene: $(cat stderr.txt)"
+[ ! -s stdout.txt ] || fail "a wrong scene: $(cat stdout.txt)"
+ranks 2 merge long.trace -o merged.trace >stdout.txt 2>stderr.txt && fail "merge by several ranks"
+grep -q "started without mpirun" stderr.txt || fail "merge by several ranks: $(cat stderr.txt)"
+ln -s leaf.obj rank0.obj
+printf 'v 0 0 1\nv 1 0 1\nv 1 1 1\nusemtl leaf\nf 1 2 3\n' >rank1.obj
+cat >differently <<'TEXT'
+#!/bin/sh
+exec "$1" trace "rank$OMPI_COMM_WORLD_RANK.obj" --period 2 2 --paths 1000
+TEXT
+chmod +x differently
+"$mpirun" -n 2 ./differently "$program" </dev/null >stdout.txt 2>stderr.txt && fail "ranks with different scenes"
+grep -q "^sunfleck: rank 1: rank 1: made with hash of trees" stderr.txt || fail "different scenes: $(cat stderr.txt)"
+cat >dying <<'TEXT'
+#!/bin/sh
+[ "$OMPI_COMM_WORLD_RANK" = 0 ] || (sleep 1; kill -KILL $$) &
+exec "$1" trace leaf.obj --period 2 2 --paths 1e12 --threads 1
+TEXT
+chmod +x dying
+timeout 60 "$mpirun" -n 2 ./dying "$program" </dev/null >stdout.txt 2>stderr.txt
+case $? in 0 | 124) fail "a rank died and the others went on" ;; esac
+grep -q "signal 9" stderr.txt || fail "a rank died: $(cat stderr.txt)"
+
+[ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }
+echo "all as it should be"
