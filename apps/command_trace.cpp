@@ -14,16 +14,16 @@
 #include "apps/brf_output.hpp"
 #include "apps/commands.hpp"
 #include "apps/pictures.hpp"
+#include "apps/run_identity.hpp"
+#include "apps/run_part.hpp"
 #include "apps/scene_options.hpp"
 #include "apps/slab_options.hpp"
 #include "apps/team.hpp"
 #include "apps/terminal.hpp"
 #include "apps/trace_output.hpp"
-#include "apps/version.hpp"
 #include "core/elapsed.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
-#include "grid/density_grid.hpp"
 #include "render/compare/validation.hpp"
 #include "render/image_file.hpp"
 #include "render/reference/brf_trace.hpp"
@@ -61,7 +61,7 @@ struct TraceOptions {
 struct Extent {
   double target = 0.;  // relative error to reach; 0: none
   double seconds = std::numeric_limits<double>::infinity();
-  std::uint64_t part = 0, parts = 1;
+  RunPart part;
 };
 
 // "90", "90s", "1.5m", "2h" in seconds.
@@ -83,23 +83,8 @@ Extent extentOf(const TraceOptions& options) {
     extent.target = *target;
   }
   if (!options.time.empty()) extent.seconds = secondsOf(options.time);
-  if (!options.part.empty()) {
-    const char* const last = options.part.data() + options.part.size();
-    const auto number = std::from_chars(options.part.data(), last, extent.part);
-    const bool slash = number.ec == std::errc() && number.ptr != last && *number.ptr == '/';
-    const auto parts = std::from_chars(slash ? number.ptr + 1 : last, last, extent.parts);
-    if (!slash || parts.ec != std::errc() || parts.ptr != last || extent.part < 1 || extent.part > extent.parts)
-      throw InvalidInput("--part " + options.part + ": must be K/N, the K-th of N parts");
-    --extent.part;
-  }
+  if (!options.part.empty()) extent.part = partNamed(options.part);
   return extent;
-}
-
-// What tells this scene and this program from others.
-TraceIdentity identityOf(const Scene& scene, bool with_wood) {
-  return {{"program", versionText()},
-          {"hash of trees and places", standHash(meshes(scene), scene.stand)},
-          {"wood", with_wood ? "with" : "without"}};
 }
 
 class TraceRun {
@@ -113,9 +98,9 @@ class TraceRun {
     if (!options.other_leaf.empty()) traced_leaf_ = leafOfAll(scene, options);
     for (int band = 0; band < kBands; ++band)
       if (options.all_bands || band == options.band) bands_.push_back(traceLight(scene, band));
-    if (run.team) requireSameAtAll(*run.team, identityOf(scene, !options.without_wood));
+    if (run.team) requireSameAtAll(*run.team, runIdentity(scene, !options.without_wood));
     if (!options.checkpoint.empty() && !(run.team && run.team->rank() > 0))
-      store_ = TraceStore(options.checkpoint, options.write_every, identityOf(scene, !options.without_wood));
+      store_ = TraceStore(options.checkpoint, options.write_every, runIdentity(scene, !options.without_wood));
   }
 
   void light() {
@@ -128,7 +113,7 @@ class TraceRun {
     const TraceGoal goal = extent_.target > 0.
                                ? until(
                                      extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
-                               : allOf(partOf(units, extent_.part, extent_.parts));
+                               : allOf(partOf(units, extent_.part.number, extent_.part.of));
     const Spent spent = work(goal, job, section, "tracing light");
     if (section.sums.units() == 0) return;
     if (extent_.target > 0.) tellTarget(job.relativeError(section.sums) <= extent_.target);
@@ -257,7 +242,7 @@ class TraceRun {
   Spent workOnGroups(const Job& job, std::uint64_t units, TraceSection& section, const std::string& label) {
     if (extent_.target == 0.) {
       section.asked = units;
-      return work(allOf(partOf(units, extent_.part, extent_.parts)), job, section, label);
+      return work(allOf(partOf(units, extent_.part.number, extent_.part.of)), job, section, label);
     }
     section.asked = 0;
     const TraceGoal goal{

@@ -96,6 +96,7 @@ int run(int count, char** arguments, apps::Team* team) {
   apps::addPlant(app, options, status);
   apps::addVoxelize(app, options, status);
   apps::addTrace(app, options, status);
+  apps::addSweep(app, options, status);
   apps::addMerge(app, options, status);
   apps::addRender(app, options, status);
   apps::addBench(app, options, status);

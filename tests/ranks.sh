@@ -28,8 +28,8 @@ for count in 2 3; do
   [ -s ranks.exr ] && [ -s ranks.csv ] || fail "$count ranks: a file is missing"
   rm -f ranks.*
 done
-"$program" $run --target 1% >alone_target.json || fail "--target"
-ranks 2 $run --target 1% >target.json 2>stderr.txt || fail "--target over ranks: $(cat stderr.txt)"
+"$program" $run --target 4% >alone_target.json || fail "--target"
+ranks 2 $run --target 4% >target.json 2>stderr.txt || fail "--target over ranks: $(cat stderr.txt)"
 [ "$(shares target.json)" = "$(shares alone_target.json)" ] || fail "--target: $(diff target.json alone_target.json)"
 
 # Killed and stopped in the middle it goes on, also as another number of ranks.
@@ -61,7 +61,7 @@ exec "$1" trace "rank$OMPI_COMM_WORLD_RANK.obj" --period 2 2 --paths 1000
 TEXT
 chmod +x differently
 "$mpirun" -n 2 ./differently "$program" </dev/null >stdout.txt 2>stderr.txt && fail "ranks with different scenes"
-grep -q "^sunfleck: rank 1: rank 1: made with hash of trees" stderr.txt || fail "different scenes: $(cat stderr.txt)"
+grep -q "^sunfleck: rank 1: this rank: made with hash of trees" stderr.txt || fail "different scenes: $(cat stderr.txt)"
 cat >dying <<'TEXT'
 #!/bin/sh
 [ "$OMPI_COMM_WORLD_RANK" = 0 ] || (sleep 1; kill -KILL $$) &

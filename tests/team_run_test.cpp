@@ -184,7 +184,7 @@ TEST(TeamRun, RefusesDifferentRuns) {
       requireSameAtAll(team, job.identity());
       EXPECT_EQ(team.rank(), 0);
     } catch (const InvalidInput& e) {
-      EXPECT_STREQ(e.what(), "rank 1: made with kind = others: must be means");
+      EXPECT_STREQ(e.what(), "this rank: made with kind = others: must be means");
     }
   });
 }

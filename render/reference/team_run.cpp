@@ -1,7 +1,5 @@
 #include "render/reference/team_run.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -61,7 +59,7 @@ std::vector<std::string> computeShare(TraceTeam& team, const TraceJob& job, Trac
 
 void requireSameAtAll(TraceTeam& team, const TraceIdentity& identity) {
   const auto first = Json::parse(team.fromFirst(Json(identity).dump())).get<TraceIdentity>();
-  requireSame(fmt::format("rank {}", team.rank()), identity, first);
+  requireSame("this rank", identity, first);
 }
 
 TeamLead::TeamLead(TraceTeam& team, const TraceJob& job, std::uint64_t seed, int threads)
