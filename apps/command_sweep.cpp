@@ -194,10 +194,10 @@ class SweepRun {
                               {"table", whole ? Json(options_.table) : Json()}}
                              .dump(2, ' ', false, Json::error_handler_t::replace));
     else if (whole)
-      fmt::print("wrote {}: {} of {} rows, {} traces of them now\n", options_.table, rowCount() - missing, rowCount(),
+      fmt::print("wrote {}: {} of {} rows, by {} traces now\n", options_.table, rowCount() - missing, rowCount(),
                  computed_);
     else
-      fmt::print("part {} of {}: {} traces now; {} of {} rows are there: sunfleck sweep without --part writes {}\n",
+      fmt::print("part {} of {}: by {} traces now {} of {} rows are there: sunfleck sweep without --part writes {}\n",
                  part_.number + 1, part_.of, computed_, rowCount() - missing, rowCount(), options_.table);
     if (ended_early) fmt::print(stderr, "sunfleck: ended early: the same command goes on\n");
     return ended_early ? 1 : 0;

@@ -22,6 +22,7 @@ namespace sunfleck::apps {
 namespace {
 
 constexpr double kPaths = 4e6, kMostPaths = 1e15;
+constexpr GeometryEffort kGeometry{};  // that of validate
 
 std::string hashOf(const std::string& text) {
   return to_string(boost::uuids::name_generator_sha1(boost::uuids::nil_uuid())(text));
@@ -71,10 +72,10 @@ SweepScene::SweepScene(const SweepFile& sweep, std::size_t scene, std::uint64_t 
       scene_(readScene(sweep.sceneFile(scene))),
       identity_(textOf(runIdentity(scene_, sweep.with_wood)) +
                 fmt::format("seed {}, paths {}, target {}, maps {} {} {} {}\n", seed, orNothing(sweep.paths),
-                            orNothing(sweep.target), geometry_.light_resolution, geometry_.sample_directions,
-                            geometry_.sample_resolution, geometry_.cells)),
+                            orNothing(sweep.target), kGeometry.light_resolution, kGeometry.sample_directions,
+                            kGeometry.sample_resolution, kGeometry.cells)),
       rays_(meshes(scene_), scene_.stand, sweep.with_wood),
-      stand_(geometry_) {}
+      stand_(kGeometry) {}
 
 // The scene in one row. Optics stand in the band that they are of.
 Scene SweepScene::sceneOf(const SweepTask& task, const SweepOptics& optics) const {

@@ -49,7 +49,6 @@ class SweepScene {
   Scene scene_;
   std::string identity_;  // of the scene, the program and the effort
   RayScene rays_;
-  GeometryEffort geometry_;
   StandGeometry stand_;
 };
 

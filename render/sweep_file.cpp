@@ -90,17 +90,15 @@ void readModels(SweepFile& sweep, SceneTable& table) {
 SweepFile readTable(const toml::table& root, const std::filesystem::path& path) {
   SweepFile sweep{.path = path};
   const std::string file = path.string();
-  // The keys of the file itself, and its tables, which are told apart here.
-  static constexpr std::array tables{"sun", "leaf", "wood", "ground", "effort"};
-  toml::table own = root;
-  for (const char* name : tables) own.erase(name);
-  for (const auto& [key, node] : own)
-    if (key != "scenes" && key != "models")
+  for (const auto& [key, node] : root) {
+    static constexpr std::array known{"scenes", "models", "sun", "leaf", "wood", "ground", "effort"};
+    if (std::find(known.begin(), known.end(), key.str()) == known.end())
       throw InvalidInput(fmt::format("{}:{}: unknown key \"{}\"; see: sunfleck --help sweep", file,
                                      node.source().begin.line, key.str()));
+  }
   const auto table = [&](const char* name) { return SceneTable(root.get(name), file, name, "sweep"); };
-  SceneTable top(&own, file, "sweep", "sweep"), sun = table("sun"), leaf = table("leaf"), wood = table("wood"),
-                                                ground = table("ground"), effort = table("effort");
+  SceneTable top(&root, file, "", "sweep"), sun = table("sun"), leaf = table("leaf"), wood = table("wood"),
+                                            ground = table("ground"), effort = table("effort");
   if (!top.has("scenes")) throw InvalidInput(file + ": scenes: must be there, a list of names of scenes and files");
   sweep.scenes = top.texts("scenes");
   readModels(sweep, top);

@@ -36,15 +36,42 @@ ranks 2 $run --target 4% >target.json 2>stderr.txt || fail "--target over ranks:
 long="trace leaf.obj --period 2 2 --paths 1e7 --json --threads 1"
 "$program" $long --checkpoint long.trace >long.json || fail "$long"
 cut=0
-for signal in KILL TERM INT; do
-  timeout -s $signal 1 "$mpirun" -n 2 "$program" $long --checkpoint cut.trace --write-every 0 >/dev/null 2>&1 </dev/null
-  [ $? -ne 0 ] && [ -e cut.trace ] && ! cmp -s cut.trace long.trace && cut=$((cut + 1))
-  for _ in $(seq 100); do [ -e cut.trace.lock ] || break; sleep 0.1; done  # ranks outlive an mpirun that is killed
-done 2>/dev/null
+# cuts_after FILE SIGNAL ARGUMENTS...: two ranks whose mpirun gets the signal once the file is there and has changed
+cuts_after() {
+  local file=$1 signal=$2 before; shift 2
+  before=$(md5sum "$file" 2>/dev/null)
+  "$mpirun" -n 2 "$program" "$@" >/dev/null 2>&1 </dev/null &
+  for _ in $(seq 1000); do [ -s "$file" ] && [ "$(md5sum "$file")" != "$before" ] && break; sleep 0.02; done
+  kill -$signal $!
+  wait $! && cut=$((cut - 1))  # it was done before
+  cut=$((cut + 1))
+  for _ in $(seq 100); do [ -e "$file.lock" ] || break; sleep 0.1; done  # ranks outlive an mpirun that is killed
+}
+set -m  # or what runs behind does not hear of Ctrl-C
+for signal in KILL TERM INT; do cuts_after cut.trace $signal $long --checkpoint cut.trace --write-every 0; done 2>/dev/null
 [ $cut -gt 0 ] || fail "no run was cut in the middle"
 ranks 3 $long --checkpoint cut.trace >cut.json 2>stderr.txt || fail "going on: $(cat stderr.txt)"
 [ "$(shares cut.json)" = "$(shares long.json)" ] || fail "going on: $(diff cut.json long.json)"
 cmp -s cut.trace long.trace || fail "going on: the checkpoint differs"
+
+# A sweep over ranks gives the same table, also when it is killed and goes on as one process.
+cat >sweep.toml <<'TEXT'
+scenes = ["leaf.obj", "slab"]
+models = ["mc", "ss"]
+[sun]
+zenith_deg = [0, 10, 20, 30, 40, 50]
+[leaf]
+albedo = [0.2, 0.9]
+[effort]
+paths = 1e5
+TEXT
+"$program" sweep sweep.toml -o alone.csv --threads 1 >/dev/null || fail "sweep"
+ranks 3 sweep sweep.toml -o ranks.csv --threads 1 >stdout.txt 2>stderr.txt || fail "sweep over ranks: $(cat stderr.txt)"
+grep -q "wrote ranks.csv: 48 of 48 rows, by 12 traces now" stdout.txt || fail "sweep over ranks: $(cat stdout.txt)"
+cmp -s alone.csv ranks.csv || fail "sweep over ranks: another table"
+for signal in KILL TERM; do cuts_after cut.csv.rows $signal sweep sweep.toml -o cut.csv --threads 1; done 2>/dev/null
+"$program" sweep sweep.toml -o cut.csv >/dev/null || fail "a sweep that was cut"
+cmp -s alone.csv cut.csv || fail "a sweep that was cut: another table"
 
 # A mistake is told once; a rank that dies ends all.
 ranks 2 trace nowhere >stdout.txt 2>stderr.txt

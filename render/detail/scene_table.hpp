@@ -150,7 +150,7 @@ class SceneTable {
     else
       node.visit([&](const auto& v) { value << v; });
     throw InvalidInput(fmt::format("{}:{}: {} = {}: must be {}", file_, node.source().begin.line,
-                                   key == name_ ? key : name_ + "." + key, value.str(), rule));
+                                   key == name_ || name_.empty() ? key : name_ + "." + key, value.str(), rule));
   }
 
  private:
