@@ -7,6 +7,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "apps/commands.hpp"
@@ -58,16 +59,21 @@ class SweepRun {
  public:
   SweepRun(const SweepChoices& options, const RunOptions& run, const SweepFile& sweep, std::uint64_t seed)
       : options_(options), run_(run), sweep_(sweep), scenes_(sweep, seed), journal_(options.table) {
-    for (std::size_t i = 0; i < taskCount(sweep_) && !interrupted(); ++i) {
+    const std::size_t tasks = taskCount(sweep_);
+    const Progress progress = terminalProgress("reading scenes", run.quiet);
+    for (std::size_t i = 0; i < tasks; ++i) {
       const SweepTask task = taskAt(sweep_, i);
       rows_.push_back(scenes_.of(task).rows(task));
+      if (!goOn(progress, static_cast<double>(i + 1) / static_cast<double>(tasks)))
+        throw std::runtime_error("interrupted");
     }
     if (!options.part.empty()) part_ = partNamed(options.part);
     const UnitRanges own = partOf(taskCount(sweep_), part_.number, part_.of);
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (own.contains(i) && missingOf(i) > 0) left_.push_back({.task = i, .scene = taskAt(sweep_, i).scene});
-    for (const std::string& where : journal_.damaged())
-      fmt::print(stderr, "sunfleck: {}: damaged: this row is computed anew\n", where);
+    if (const std::vector<std::string>& damaged = journal_.damaged(); !damaged.empty())
+      fmt::print(stderr, "sunfleck: {}: damaged{}: computed anew where it is missing\n", damaged.front(),
+                 damaged.size() > 1 ? fmt::format(", as are {} lines more", damaged.size() - 1) : "");
   }
 
   int tell() {
@@ -132,7 +138,7 @@ class SweepRun {
     if (interrupted()) queue.stop();
     if (others.joinable()) others.join();
     computed_ = done;
-    return finish(stopped || interrupted());
+    return finish();
   }
 
  private:
@@ -176,7 +182,8 @@ class SweepRun {
     }
   }
 
-  int finish(bool ended_early) {
+  int finish() {
+    const bool ended_early = computed_ < left_.size();
     std::size_t missing = 0;
     std::string text = sweepHeader() + '\n';
     for (const auto& of_task : rows_)
@@ -197,7 +204,7 @@ class SweepRun {
       fmt::print("wrote {}: {} of {} rows, by {} traces now\n", options_.table, rowCount() - missing, rowCount(),
                  computed_);
     else
-      fmt::print("part {} of {}: by {} traces now {} of {} rows are there: sunfleck sweep without --part writes {}\n",
+      fmt::print("part {} of {}: by {} traces now; {} of {} rows are there: sunfleck sweep without --part writes {}\n",
                  part_.number + 1, part_.of, computed_, rowCount() - missing, rowCount(), options_.table);
     if (ended_early) fmt::print(stderr, "sunfleck: ended early: the same command goes on\n");
     return ended_early ? 1 : 0;

@@ -132,7 +132,7 @@ class MpiTeam final : public Team {
 
   // A mistake that all ranks see is told by the first: the others give it time.
   void fail(int status, std::string message) override {
-    if (rank_ > 0) std::this_thread::sleep_for(std::chrono::seconds(3));
+    if (rank_ > 0) std::this_thread::sleep_for(std::chrono::seconds(2));
     std::FILE* const out = errors_ ? errors_ : stderr;
     fmt::print(out, "sunfleck: {}{}\n", rank_ > 0 ? fmt::format("rank {}: ", rank_) : "", message);
     std::fflush(out);
