@@ -80,7 +80,6 @@ class SweepRun {
     std::size_t missing = 0;
     double seconds = 0., of_scene = 0.;
     std::optional<std::size_t> guessed;
-    Json rows = Json::array();
     if (!run_.json) fmt::print("{},finished\n", sweepHeader().substr(0, sweepHeader().find(",paths,")));
     for (const auto& of_task : rows_)
       for (const SweepRow& row : of_task) {
@@ -143,9 +142,7 @@ class SweepRun {
 
  private:
   std::size_t rowCount() const {
-    return taskCount(sweep_) == 0
-               ? 0
-               : sweep_.scenes.size() * sweep_.suns.size() * sweep_.optics.size() * sweep_.rowsEach();
+    return sweep_.scenes.size() * sweep_.suns.size() * sweep_.optics.size() * sweep_.rowsEach();
   }
 
   std::size_t missingOf(std::size_t task) const {
