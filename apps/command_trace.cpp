@@ -15,9 +15,12 @@
 #include "apps/cell_output.hpp"
 #include "apps/commands.hpp"
 #include "apps/pictures.hpp"
+#include "apps/run_identity.hpp"
+#include "apps/run_part.hpp"
 #include "apps/scene_options.hpp"
 #include "apps/slab_options.hpp"
 #include "apps/spectrum.hpp"
+#include "apps/team.hpp"
 #include "apps/terminal.hpp"
 #include "apps/trace_output.hpp"
 #include "apps/version.hpp"
@@ -31,6 +34,7 @@
 #include "render/reference/brf_trace.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
+#include "render/reference/team_run.hpp"
 #include "render/reference/trace_goal.hpp"
 
 namespace sunfleck::apps {
@@ -64,7 +68,7 @@ struct TraceOptions {
 struct Extent {
   double target = 0.;  // relative error to reach; 0: none
   double seconds = std::numeric_limits<double>::infinity();
-  std::uint64_t part = 0, parts = 1;
+  RunPart part;
 };
 
 // "90", "90s", "1.5m", "2h" in seconds.
@@ -86,31 +90,8 @@ Extent extentOf(const TraceOptions& options) {
     extent.target = *target;
   }
   if (!options.time.empty()) extent.seconds = secondsOf(options.time);
-  if (!options.part.empty()) {
-    const char* const last = options.part.data() + options.part.size();
-    const auto number = std::from_chars(options.part.data(), last, extent.part);
-    const bool slash = number.ec == std::errc() && number.ptr != last && *number.ptr == '/';
-    const auto parts = std::from_chars(slash ? number.ptr + 1 : last, last, extent.parts);
-    if (!slash || parts.ec != std::errc() || parts.ptr != last || extent.part < 1 || extent.part > extent.parts)
-      throw InvalidInput("--part " + options.part + ": must be K/N, the K-th of N parts");
-    --extent.part;
-  }
+  if (!options.part.empty()) extent.part = partNamed(options.part);
   return extent;
-}
-
-// What tells this scene and this program from others.
-TraceIdentity identityOf(const Scene& scene, bool with_wood) {
-  return {{"program", versionText()},
-          {"hash of trees and places", standHash(meshes(scene), scene.stand)},
-          {"wood", with_wood ? "with" : "without"}};
-}
-
-// A size of a unit that a run began with is kept, whatever it is told on going on.
-std::uint64_t unitSize(const TraceIdentity* begun, const std::string& name, std::uint64_t fresh) {
-  if (!begun || !begun->contains(name)) return fresh;
-  const std::string& text = begun->at(name);
-  std::from_chars(text.data(), text.data() + text.size(), fresh);
-  return fresh;
 }
 
 class TraceRun {
@@ -130,8 +111,9 @@ class TraceRun {
       bands_ = traceLights(scene, options.all_bands ? std::vector{0, 1, 2} : std::vector{options.band});
       if (options.all_bands) names_.assign(kBandNames.begin(), kBandNames.end());
     }
-    if (!options.checkpoint.empty())
-      store_ = TraceStore(options.checkpoint, options.write_every, identityOf(scene, !options.without_wood));
+    if (run.team) requireSameAtAll(*run.team, runIdentity(scene, !options.without_wood));
+    if (!options.checkpoint.empty() && !(run.team && run.team->rank() > 0))
+      store_ = TraceStore(options.checkpoint, options.write_every, runIdentity(scene, !options.without_wood));
   }
 
   void light() {
@@ -140,13 +122,13 @@ class TraceRun {
     std::optional<TraceCells> grid;
     Spent spent;
     // As many bands as one path carries, then the others on paths of the same random numbers.
-    for (std::size_t first = 0; first < bands_.size() && !interrupted(); first += kMostBands) {
+    for (std::size_t first = 0; first < bands_.size() && !interruptedAnywhere(run_.team); first += kMostBands) {
       const std::vector<TraceLight> bands(
           bands_.begin() + static_cast<std::ptrdiff_t>(first),
           bands_.begin() + static_cast<std::ptrdiff_t>(std::min(bands_.size(), first + kMostBands)));
       const std::string name = first == 0 ? "light" : fmt::format("light {}", 1 + first / kMostBands);
       const auto paths = static_cast<std::uint64_t>(options_.paths.value_or(extent_.target > 0. ? kMostPaths : kPaths));
-      const std::uint64_t per_unit = unitSize(store_.identity(name), "paths per unit", pathsPerUnit(paths));
+      const std::uint64_t per_unit = unitSize(name, "paths per unit", pathsPerUnit(paths));
       if (!options_.cells.empty()) grid.emplace(rays_, options_.cell, bands.size());
       // A file may be asked for its leaves later.
       const bool leaves = !options_.leaves.empty() || !options_.checkpoint.empty();
@@ -157,9 +139,9 @@ class TraceRun {
       const TraceGoal goal = extent_.target > 0.
                                  ? until(
                                        extent_.target, [&](const auto& sums) { return job.relativeError(sums); }, units)
-                                 : allOf(partOf(units, extent_.part, extent_.parts));
+                                 : allOf(partOf(units, extent_.part.number, extent_.part.of));
       spent.add(work(goal, job, section, "tracing light"));
-      if (section.sums.units() == 0) break;
+      if (section.sums.units() == 0) continue;
       if (extent_.target > 0.)
         tellTarget(section.sums.units() >= kLeastUnits && job.relativeError(section.sums) <= extent_.target);
       for (ForwardResult& result : job.results(section.sums)) results.push_back(std::move(result));
@@ -200,7 +182,7 @@ class TraceRun {
     const PixelRays pixels = pixelRays(scene_);
     const auto samples = static_cast<std::uint64_t>(options_.samples);
     const std::uint64_t per_unit =
-        unitSize(store_.identity("picture"), "samples per unit", static_cast<std::uint64_t>(samplesPerUnit(samples)));
+        unitSize("picture", "samples per unit", static_cast<std::uint64_t>(samplesPerUnit(samples)));
     const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit));
     TraceSection& section = store_.section("picture", job);
     const Spent spent = workOnGroups(job, job.unitsOf(samples), section, "tracing the picture");
@@ -224,7 +206,7 @@ class TraceRun {
     std::vector<ViewDirection> directions;
     for (const BrfView& view : views) directions.push_back(view.direction);
     const auto paths = static_cast<std::uint64_t>(options_.brf.paths);
-    const std::uint64_t per_unit = unitSize(store_.identity("brf"), "paths per unit", pathsPerUnit(paths));
+    const std::uint64_t per_unit = unitSize("brf", "paths per unit", pathsPerUnit(paths));
     const BrfJob job(rays_, bands_, directions, per_unit);
     TraceSection& section = store_.section("brf", job);
     const Spent spent = workOnGroups(job, job.unitsOf(paths), section, "tracing reflectance factors");
@@ -280,16 +262,25 @@ class TraceRun {
     }
   };
 
+  // A size of a unit that a run began with is kept, whatever it is told on going on. Rank 0 knows.
+  std::uint64_t unitSize(const std::string& section, const std::string& name, std::uint64_t fresh) {
+    const TraceIdentity* begun = store_.identity(section);
+    std::string text = begun && begun->contains(name) ? begun->at(name) : std::to_string(fresh);
+    if (run_.team) text = run_.team->fromFirst(std::move(text));
+    std::from_chars(text.data(), text.data() + text.size(), fresh);
+    return fresh;
+  }
+
   Spent work(const TraceGoal& goal, const TraceJob& job, TraceSection& section, const std::string& label) {
     Spent spent{.units_before = section.sums.units()};
     TraceGoal timed = goal;
     timed.seconds = extent_.seconds - begun_.seconds();
     const Elapsed elapsed;
-    if (!pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet)) &&
-        !interrupted())
+    if (!pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet), run_.team) &&
+        !interruptedAnywhere(run_.team))
       fmt::print(stderr, "sunfleck: {}: ended by --time before all was done\n", label);
     spent.seconds = elapsed.seconds();
-    spent.cpu_seconds = elapsed.cpuSeconds();
+    spent.cpu_seconds = sumOverRanks(run_.team, elapsed.cpuSeconds());
     spent.units = section.sums.units();
     return spent;
   }
@@ -300,7 +291,7 @@ class TraceRun {
   Spent workOnGroups(const Job& job, std::uint64_t units, TraceSection& section, const std::string& label) {
     if (extent_.target == 0.) {
       section.asked = units;
-      return work(allOf(partOf(units, extent_.part, extent_.parts)), job, section, label);
+      return work(allOf(partOf(units, extent_.part.number, extent_.part.of)), job, section, label);
     }
     section.asked = 0;
     const TraceGoal goal{
@@ -421,9 +412,10 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, scene, views));
   TraceRun trace(options, run, scene);
   if (!options.only_picture && !options.brf.only) trace.light();
-  const bool pictured = (scene.camera && options.spectrum.empty()) || !options.picture.empty() || options.only_picture;
-  if (pictured && !options.brf.only && !interrupted()) trace.picture();
-  if (!views.empty() && !interrupted()) trace.brf(views);
+  if (pictured && !options.brf.only && !interruptedAnywhere(run.team)) trace.picture();
+  if (!views.empty() && !interruptedAnywhere(run.team)) trace.brf(views);
+  const bool ended_early = interruptedAnywhere(run.team);
+  if (run.team && run.team->rank() > 0) return 0;
   if (!reference.empty()) trace.compare(std::move(reference));
 
   if (run.json) fmt::print("{}\n", trace.json().dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
@@ -431,8 +423,8 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
                                   options.brf.mes, options.checkpoint})
     if (!file.empty() && !run.json && std::filesystem::exists(file)) fmt::print("wrote {}\n", file);
   if (!trace.failure().empty()) fmt::print(stderr, "sunfleck: {}\n", trace.failure());
-  if (interrupted()) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
-  return interrupted() || !trace.failure().empty() ? 1 : 0;
+  if (ended_early) fmt::print(stderr, "sunfleck: ended early: what is told rests on the paths done\n");
+  return ended_early || !trace.failure().empty() ? 1 : 0;
 }
 
 }  // namespace
@@ -442,7 +434,8 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   CLI::App* command =
       addCommand(app, options, "trace",
                  "Monte Carlo: where the sun's light ends up, leaf by leaf, with standard errors; and what a "
-                 "camera sees of it");
+                 "camera sees of it. mpirun -n N sunfleck trace ... computes the same by N processes",
+                 Ranks::any);
   addSceneOptions(*command, trace->scene);
   addCameraOptions(*command, trace->camera, "--look-at");
   command

@@ -13,6 +13,7 @@ void addSlabTable(CLI::App& app, RunOptions& options, int& status);
 void addPlant(CLI::App& app, RunOptions& options, int& status);
 void addVoxelize(CLI::App& app, RunOptions& options, int& status);
 void addTrace(CLI::App& app, RunOptions& options, int& status);
+void addSweep(CLI::App& app, RunOptions& options, int& status);
 void addMerge(CLI::App& app, RunOptions& options, int& status);
 void addRender(CLI::App& app, RunOptions& options, int& status);
 void addBench(CLI::App& app, RunOptions& options, int& status);

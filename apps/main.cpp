@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "apps/commands.hpp"
+#include "apps/team.hpp"
 #include "apps/terminal.hpp"
 #include "apps/version.hpp"
 #include "core/require.hpp"
@@ -26,12 +28,16 @@ constexpr int kWrongInput = 2;
 constexpr std::string_view kReadGrid = "read-grid";  // how the program calls itself: see grid/isolated_read.hpp
 
 // A user's mistake is told in one line, whatever the message was made of.
-int wrongInput(std::string message) {
+std::string oneLine(std::string message) {
   for (char& c : message) {
     if (c == '\n') c = ' ';
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';  // a file's bytes must not command the terminal
   }
-  fmt::print(stderr, "sunfleck: {}\n", message);
+  return message;
+}
+
+int wrongInput(const std::string& message) {
+  fmt::print(stderr, "sunfleck: {}\n", oneLine(message));
   return kWrongInput;
 }
 
@@ -64,7 +70,7 @@ std::vector<std::string> withCommand(const CLI::App& app, int count, char** argu
   return words;
 }
 
-int run(int count, char** arguments) {
+int run(int count, char** arguments, apps::Team* team) {
   if (asksForSceneHelp(count, arguments)) {
     fmt::print("{}", sceneFileHelp());
     return 0;
@@ -81,6 +87,7 @@ int run(int count, char** arguments) {
   app.require_subcommand(0, 1);
   apps::RunOptions options;
   options.command_line = commandLine(count, arguments);
+  options.team = team;
   int status = 0;
   apps::addValidate(app, options, status);
   apps::addSlab(app, options, status);
@@ -89,6 +96,7 @@ int run(int count, char** arguments) {
   apps::addPlant(app, options, status);
   apps::addVoxelize(app, options, status);
   apps::addTrace(app, options, status);
+  apps::addSweep(app, options, status);
   apps::addMerge(app, options, status);
   apps::addRender(app, options, status);
   apps::addBench(app, options, status);
@@ -109,14 +117,18 @@ int main(int count, char** arguments) {
     return sunfleck::serveIsolatedRead(words[2], words[3], std::strtoull(words[4], nullptr, 10),
                                        std::strtoull(words[5], nullptr, 10));
   apps::catchInterrupts();
+  std::unique_ptr<apps::Team> team;
   try {
-    const int status = run(count, arguments);
+    team = apps::joinTeam();
+    const int status = run(count, arguments, team.get());
     if (std::fflush(stdout) == 0) return status;
     fmt::print(stderr, "sunfleck: the results could not be printed: {}\n", std::strerror(errno));
     return 1;
   } catch (const sunfleck::InvalidInput& e) {
+    if (team) team->fail(kWrongInput, oneLine(e.what()));
     return wrongInput(e.what());
   } catch (const std::exception& e) {
+    if (team) team->fail(1, std::string("failed: ") + e.what());
     fmt::print(stderr, "sunfleck: failed: {}\n", e.what());
     return 1;
   }

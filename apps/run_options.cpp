@@ -6,6 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/team.hpp"
+#include "core/require.hpp"
+
 namespace sunfleck::apps {
 
 CLI::Validator numberIn(double low, double high, const std::string& rule) {
@@ -43,7 +46,8 @@ void limitThreads(int threads) {
 
 }  // namespace
 
-CLI::App* addCommand(CLI::App& app, RunOptions& options, const std::string& name, const std::string& about) {
+CLI::App* addCommand(CLI::App& app, RunOptions& options, const std::string& name, const std::string& about,
+                     Ranks ranks) {
   CLI::App* command = app.add_subcommand(name, about);
   command->add_flag("--json", options.json, "Print results as JSON")->group("Common");
   command->add_flag("--quiet", options.quiet, "Show no progress")->group("Common");
@@ -53,7 +57,12 @@ CLI::App* addCommand(CLI::App& app, RunOptions& options, const std::string& name
   command->add_option("--seed", options.seed, "Seed of the random numbers (default 1)")
       ->transform(wholeNumberIn(0, 1e18, "a whole number, 0 to 1e18"))
       ->group("Common");
-  command->parse_complete_callback([&options] { limitThreads(options.threads); });
+  command->parse_complete_callback([&options, name, ranks] {
+    if (options.team && ranks == Ranks::one)
+      throw InvalidInput(name + ": must be started without mpirun: it is one process's work");
+    if (options.team && options.threads == 0) options.threads = options.team->fairThreads();
+    limitThreads(options.threads);
+  });
   return command;
 }
 

@@ -18,6 +18,10 @@ pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 
+# Ranks on one machine or many; the program is whole without. MPI's own C++ names are given up by all who made them.
+set(MPI_CXX_SKIP_MPICXX ON)
+find_package(MPI COMPONENTS CXX)
+
 # Debian 12's OpenImageIO target names an OpenCV include folder that the package does not install.
 get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
 list(FILTER oiio_includes EXCLUDE REGEX "opencv")

@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <glm/trigonometric.hpp>
-#include <iterator>
 #include <limits>
 #include <map>
-#include <string_view>
 
 #include "core/require.hpp"
 #include "plants/random_leaves.hpp"
@@ -16,6 +13,7 @@
 #include "plants/weber_penn.hpp"
 #include "render/detail/scene_media_file.hpp"
 #include "render/detail/scene_table.hpp"
+#include "render/detail/toml_text.hpp"
 #include "render/image_file.hpp"
 #include "sky/preetham.hpp"
 #include "sky/sky_models.hpp"
@@ -307,29 +305,10 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   return scene;
 }
 
-// The text of a scene file. toml++ keeps a table within a table for every dot of a key, without bound; no key of ours
-// has more than one.
-std::string readText(const std::filesystem::path& file) {
-  constexpr int kMostDots = 32;
-  if (!std::filesystem::is_regular_file(file)) throw InvalidInput(file.string() + ": must be a file that can be read");
-  std::ifstream in(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw InvalidInput(file.string() + ": cannot be read");
-  int line = 1, dots = 0;
-  for (const char c : text) {
-    line += c == '\n';
-    if (std::string_view(",=[]{}#\n").find(c) != std::string_view::npos) dots = 0;
-    if (c == '.' && ++dots > kMostDots)
-      throw InvalidInput(
-          fmt::format("{}:{}: more than {} dots on end: must be a number or a key", file.string(), line, kMostDots));
-  }
-  return text;
-}
-
 // Whatever is wrong, the message begins with the file.
 Scene readToml(const std::filesystem::path& file) {
   try {
-    return readTable(toml::parse(readText(file), file.string()), file);
+    return readTable(toml::parse(detail::tomlText(file), file.string()), file);
   } catch (const toml::parse_error& e) {
     throw InvalidInput(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
   } catch (const InvalidInput& e) {

@@ -120,7 +120,7 @@ TEST(R14_MediumField, HomogeneousDepthIsTheLengthInside) {
 // Leaves that are parallel are met with their normal, whatever rounding has done to S. Within five standard errors.
 TEST(R15_LeafNormals, EllipsoidIsSeenAsItsProjections) {
   Random random(3, 0);
-  PathRandom path(1, 1);
+  PathRandom path(Stream::light, 1, 1);
   for (int i = 0; i < 5; ++i) {
     const ProjectedArea area = randomArea(random);
     const LeafEllipsoid leaves(area, 2.f);
@@ -158,7 +158,7 @@ TEST(R15_LeafNormals, EllipsoidIsSeenAsItsProjections) {
 // Check leaves of named inclinations: G against its integral (P20), which the 64 inclinations that stand for all hit to
 // 1e-4, and the mean of |n . s'| of the leaves that light along s meets against (P21), within five standard errors.
 TEST(R15_LeafNormals, RingsAreSeenAsTheirProjections) {
-  PathRandom path(2, 1);
+  PathRandom path(Stream::light, 2, 1);
   Random random(4, 0);
   for (const char* name : {"planophile", "erectophile", "plagiophile", "extremophile", "uniform"}) {
     const LeafAngles angles = LeafAngles::named(name);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/trigonometric.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,9 +21,9 @@ namespace sunfleck::detail {
 // One table of a scene file. Every key is read through it; `done` refuses what nobody asked for.
 class SceneTable {
  public:
-  // `node`: none if the file lacks the table.
-  SceneTable(const toml::node* node, std::string file_name, std::string name)
-      : file_(std::move(file_name)), name_(std::move(name)) {
+  // `node`: none if the file lacks the table. `help`: where to learn of its keys.
+  SceneTable(const toml::node* node, std::string file_name, std::string name, std::string help = "scene")
+      : file_(std::move(file_name)), name_(std::move(name)), help_(std::move(help)) {
     if (node && !node->is_table()) refuse(*node, name_, "a table: [" + name_ + "]");
     if (node) table_ = node->as_table();
   }
@@ -65,6 +66,39 @@ class SceneTable {
   }
 
   bool isList(const std::string& key) const { return has(key) && table_->get(key)->is_array(); }
+  // A number, or a list of one at least; `once` tells whether each must differ from the others.
+  std::vector<double> listed(const std::string& key, double low, double high, const std::string& rule,
+                             bool once = true) {
+    const toml::node* node = take(key);
+    const std::string or_list = rule + ", one number or a list of such";
+    if (!node->is_array()) return {checked(*node, key, low, high, or_list)};
+    if (node->as_array()->empty()) refuse(*node, key, or_list);
+    std::vector<double> values;
+    std::set<double> seen;
+    for (const toml::node& item : *node->as_array()) {
+      const double value = checked(item, key, low, high, rule);
+      if (!seen.insert(value).second && once) refuse(item, key, "there once");
+      values.push_back(value);
+    }
+    return values;
+  }
+
+  // A text, or a list of one at least, none of them twice.
+  std::vector<std::string> texts(const std::string& key) {
+    const toml::node* node = take(key);
+    const std::string rule = "a text in quotes or a list of such";
+    if (node->is_string()) return {*node->value<std::string>()};
+    if (!node->is_array() || node->as_array()->empty()) refuse(*node, key, rule);
+    std::vector<std::string> values;
+    std::set<std::string> seen;
+    for (const toml::node& item : *node->as_array()) {
+      if (!item.is_string()) refuse(item, key, rule);
+      const auto value = *item.value<std::string>();
+      if (!seen.insert(value).second) refuse(item, key, "there once");
+      values.push_back(value);
+    }
+    return values;
+  }
 
   // One number for all bands, or one for each.
   glm::vec3 perBand(const std::string& key, const glm::vec3& fallback, double high = 1.) {
@@ -125,8 +159,8 @@ class SceneTable {
     if (!table_) return;
     for (const auto& [key, node] : *table_)
       if (std::find(taken_.begin(), taken_.end(), key.str()) == taken_.end())
-        throw InvalidInput(fmt::format("{}:{}: unknown key \"{}\" in [{}]; see: sunfleck --help scene", file_,
-                                       node.source().begin.line, key.str(), name_));
+        throw InvalidInput(fmt::format("{}:{}: unknown key \"{}\" in [{}]; see: sunfleck --help {}", file_,
+                                       node.source().begin.line, key.str(), name_, help_));
   }
 
   [[noreturn]] void refuse(const toml::node& node, const std::string& key, const std::string& rule) const {
@@ -136,7 +170,7 @@ class SceneTable {
     else
       node.visit([&](const auto& v) { value << v; });
     throw InvalidInput(fmt::format("{}:{}: {} = {}: must be {}", file_, node.source().begin.line,
-                                   key == name_ ? key : name_ + "." + key, value.str(), rule));
+                                   key == name_ || name_.empty() ? key : name_ + "." + key, value.str(), rule));
   }
 
  private:
@@ -169,7 +203,7 @@ class SceneTable {
     return values;
   }
 
-  std::string file_, name_;
+  std::string file_, name_, help_;
   const toml::table* table_ = nullptr;
   std::vector<std::string> taken_;
 };

@@ -7,6 +7,7 @@
 #include "core/progress.hpp"
 #include "render/reference/trace_run.hpp"
 #include "render/reference/trace_store.hpp"
+#include "render/reference/trace_team.hpp"
 
 namespace sunfleck {
 
@@ -28,8 +29,9 @@ TraceGoal until(double target, std::function<double(const TraceSums& sums)> erro
 
 // Works towards the goal from what the section has, writing the store's file now and then and at the end. Answers false
 // when time or `progress` ended it early; what was computed by then is in the section. A run that is told to stop in
-// the middle and goes on later finds the same to the last bit.
+// the middle and goes on later finds the same to the last bit. So does a team, all of whose ranks call it: rank 0 alone
+// looks at the goal and has the sums and the store; to the others it answers the same.
 bool pursue(const TraceGoal& goal, const TraceJob& job, TraceSection& section, TraceStore& store, std::uint64_t seed,
-            int threads, const Progress& progress = {});
+            int threads, const Progress& progress = {}, TraceTeam* team = nullptr);
 
 }  // namespace sunfleck

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <vector>
 
+#include "core/elapsed.hpp"
+
 namespace sunfleck {
 namespace {
 
@@ -47,12 +49,15 @@ void runUnits(const TraceJob& job, const TraceUnits& units, TraceSums& sums, con
   const std::uint64_t wanted = units.wanted.count(), count = missing.count();
   std::uint64_t added = 0;
   UnitQueue queue(missing.ranges());
+  const Elapsed elapsed;
   Stopped stopped = false;
   std::mutex adding;
   const auto work = [&] {
     UnitTally tally(job.bins());
     StopOthers stop_others{stopped};
-    for (std::uint64_t unit; !stopped.load(std::memory_order_relaxed) && queue.take(unit); tally.clear()) {
+    for (std::uint64_t unit;
+         !stopped.load(std::memory_order_relaxed) && elapsed.seconds() < units.seconds && queue.take(unit);
+         tally.clear()) {
       job.trace(units.seed, unit, tally, stopped);
       const std::scoped_lock lock(adding);
       if (stopped) return;

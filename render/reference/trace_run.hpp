@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "core/progress.hpp"
 #include "render/reference/trace_job.hpp"
@@ -13,6 +14,8 @@ struct TraceUnits {
   std::uint64_t seed = 1;
   UnitRanges wanted{};
   int threads = 0;  // at most; 0: all cores
+  // After so long no further unit is begun.
+  double seconds = std::numeric_limits<double>::infinity();
 };
 
 // Computes those of `units` that `sums` has not yet, side by side, and adds them. `progress` is told after each how

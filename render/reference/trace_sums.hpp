@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "render/reference/unit_ranges.hpp"
@@ -50,6 +51,7 @@ class TraceSums {
     ExactSum sum, squares;
   };
   const Bin& bin(std::size_t i) const { return bins_[i]; }
+  std::span<Bin> values() { return bins_; }
   // What a file held.
   void restore(std::size_t bin, const Bin& value) { bins_[bin] = value; }
   void restore(std::uint64_t seed, UnitRanges done) { done_[seed] = std::move(done); }
