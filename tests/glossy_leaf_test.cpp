@@ -141,7 +141,7 @@ TEST(R20_GlossyLeaf, SamplesFollowTheirDensity) {
         }
       expected.back() = std::max(0., 1. - above);
       constexpr int kDraws = 40'000;
-      detail::PathRandom random(7, static_cast<std::uint64_t>(1e3 * zenith));
+      detail::PathRandom random(detail::Stream::light, 7, static_cast<std::uint64_t>(1e3 * zenith));
       for (int i = 0; i < kDraws; ++i) {
         const float u = random.uniform();
         const LeafGloss::Sample sample = gloss.sample(eye, u, random.uniform());
@@ -237,7 +237,7 @@ TEST(R20_GlossyLeaf, PathsGoWhereItSends) {
     }
     constexpr int kPaths = 60'000;
     std::array<std::array<double, 3>, 3> sum{}, squares{};
-    detail::PathRandom random(3, static_cast<std::uint64_t>(1e3 * zenith));
+    detail::PathRandom random(detail::Stream::light, 3, static_cast<std::uint64_t>(1e3 * zenith));
     for (int i = 0; i < kPaths; ++i) {
       detail::BandLanes<2> weight = start;
       const detail::Onward onward = leaf.scatter(normal, arriving, weight, random);

@@ -326,13 +326,15 @@ TEST_F(Import, TreesOfOtherPrograms) {
     std::uint32_t leaves;
     std::size_t leaf_triangles, wood_triangles;  // in the file, those of no area among them
   };
+  // A mask that cuts nothing away.
+  const auto whole = [](const fs::path&) { return Image{.width = 1, .height = 1, .channels = {"Y"}, .values = {1.f}}; };
   for (const Known& known :
        {Known{"AlmondWP.obj", 24'150, 48'300, 116'936}, Known{"treegen_acer_s2.obj", 2'429, 21'861, 54'012},
         Known{"treegen_quaking_aspen_s1.obj", 15'364, 138'276, 57'980},
         Known{"eztree_oak_medium.obj", 5'320, 10'640, 3'166}, Known{"leafcube_lai2_spherical.obj", 22'418, 41'335, 0},
         Known{"ellipsoid18k.ply", 9'000, 18'000, 0}}) {
     if (!fs::exists(trees / known.name)) continue;
-    const ImportedTree tree = importTree(trees / known.name);
+    const ImportedTree tree = importTree(trees / known.name, {}, whole);
     EXPECT_EQ(tree.mesh.leaf_count, known.leaves) << known.name;
     EXPECT_EQ(tree.mesh.leaf_triangles.size() + tree.dropped.leaf_triangles, known.leaf_triangles) << known.name;
     EXPECT_EQ(tree.mesh.wood_triangles.size() + tree.dropped.wood_triangles, known.wood_triangles) << known.name;

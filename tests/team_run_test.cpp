@@ -84,7 +84,7 @@ class Means final : public TraceJob {
   TraceIdentity identity() const override { return {{"kind", name_}}; }
   void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped&) const override {
     if (duration_.count() > 0) std::this_thread::sleep_for(duration_);
-    detail::PathRandom random(seed, unit);
+    detail::PathRandom random(detail::Stream::light, seed, unit);
     tally.add(0, double{random.pair().u});
     tally.add(1 + unit % 3, double{random.pair().u});
   }

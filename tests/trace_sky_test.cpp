@@ -225,7 +225,9 @@ TEST(R19_TraceSky, DiscOfTheSunGivesTheCosineOfItsMiddle) {
       EXPECT_EQ(found.leaf_back[0].value, 0.);
       EXPECT_EQ(found.sky_share, 0.);
       const CameraResult seen = traceCamera(scene, light, picture(-kTilted, 0.2f, 8), -1.f, {.paths = 20'000});
-      EXPECT_TRUE(agrees(seen.mean, 0.3 * cosine / kPi)) << diameter << " " << azimuth;
+      // The smallest disc's light is met by chance, and not drawn, in less than one path of all, which then brings as
+      // much as the others on the mean: too rare for the standard error to know.
+      EXPECT_TRUE(agrees(seen.mean, 0.3 * cosine / kPi, 0.3 * cosine / kPi / 20'000.)) << diameter << " " << azimuth;
     }
 }
 
@@ -346,7 +348,7 @@ TEST(R18_TraceSky, DrawnAndMetLightHaveOneMean) {
   constexpr int kSamples = 200'000;
   std::array<double, 3> sums{}, squares{};
   for (std::uint64_t i = 0; i < kSamples; ++i) {
-    PathRandom random(6, i);
+    PathRandom random(Stream::light, 6, i);
     std::array<double, 3> found{};
     light.draw<1>(random, [&](const DrawnLight<1>& drawn) {
       const double sent = double{optics.sent(hit, sight, drawn.to_light)[0]} * double{drawn.radiance[0]};
