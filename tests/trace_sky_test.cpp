@@ -159,6 +159,44 @@ TEST(R18_TraceSky, FurnaceOfWhiteLeavesShowsRadianceOne) {
     EXPECT_TRUE(agrees(view.whole, 1.));
 }
 
+// The same with all at once that sends on all light it gets: glossy leaves, turbid leaves, fog with a strong forward
+// peak, a white ground. Half a per mill of the gloss is the error of its table (R20).
+TEST(R18_TraceSky, FurnaceHoldsGlossTurbidLeavesAndFogToo) {
+  const TreeMesh mesh = leafBox(60, 12);
+  constexpr float kEverywhere = std::numeric_limits<float>::infinity();
+  const Bounds layer{.low = {-kEverywhere, -kEverywhere, -0.5f}, .high = {kEverywhere, kEverywhere, 0.5f}};
+  const std::vector<TraceMedium> media{
+      {.scatterer = TraceMedium::Scatterer::leaves, .box = layer, .density = 1.5f},
+      {.scatterer = TraceMedium::Scatterer::particles, .asymmetry = 0.8f, .box = layer, .density = 2.f}};
+  const RayScene scene(std::array{&mesh}, {.period = glm::vec2(2.f, 1.f)}, true, media);
+  const float gloss = 0.5f;
+  TraceLight light{.leaf = {.reflectance = 0.3f, .transmittance = 0.7f},
+                   .ground_albedo = 1.f,
+                   .sun_irradiance = 0.f,
+                   .sky = uniform(kPi)};
+  light.of_media = {{.reflectance = 0.6f, .transmittance = 0.4f}, {.reflectance = 1.f, .transmittance = 0.f}};
+  light.leaf.gloss = gloss;
+  light.leaf.gloss_roughness = 0.3f;
+  // A path is scattered by some three leaves on the mean.
+  const double table = 3. * 5e-4 * double{gloss};
+  for (const float zenith : {20.f, 75.f}) {
+    const CameraResult seen =
+        traceCamera(scene, light, picture(sunlight(zenith * static_cast<float>(kDegree), 2.f), 1.f, 32),
+                    scene.box().low.z, {.paths = 32'768});
+    EXPECT_TRUE(agrees(seen.mean, 1., table / 5.3)) << zenith;
+    EXPECT_LT(seen.mean.standard_error, 0.01);
+  }
+  const BrfResult factors = brf(scene, {light}, {{0.3, 1.}, {1.2, 4.}}, 20'000).front();
+  for (const ReflectanceParts& view : {factors.views[0], factors.views[1], factors.albedo})
+    EXPECT_TRUE(agrees(view.whole, 1., table / 5.3));
+  const ForwardResult result = traceForward(scene, light, {.paths = 20'000});
+  EXPECT_TRUE(
+      agrees(result.reflected, 1., table / 5.3));  // a glossy reflection is weighed: no leaf is white path by path
+  EXPECT_TRUE(agrees(result.absorbed_leaves, 0., table / 5.3));
+  EXPECT_LT(result.reflected.standard_error, 0.002);
+  EXPECT_NEAR(result.absorbed_particles->value, 0., kRounding * 10.);
+}
+
 TEST(R19_TraceSky, FurnaceOfWhiteLeavesLightsAllSidesAlike) {
   const SceneOfLeaves of;
   const TraceLight light{.leaf = {.reflectance = 0.3f, .transmittance = 0.7f},

@@ -1,0 +1,71 @@
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "render/detail/image_codec.hpp"
+
+namespace sunfleck::detail {
+namespace {
+
+[[noreturn]] void fail(std::string reason) {
+  reason.resize(std::min(reason.find('\n'), reason.size()));
+  throw std::runtime_error(reason.empty() ? "OpenImageIO gives no reason" : reason);
+}
+
+class OpenImageIoCodec final : public ImageCodec {
+ public:
+  Image read(const std::filesystem::path& file, const std::function<void(const StoredImage&)>& check) const override {
+    OIIO::ImageSpec as_stored;
+    as_stored.attribute("oiio:UnassociatedAlpha", 1);  // else colours would come multiplied by alpha
+    const auto in = OIIO::ImageInput::open(file.string(), &as_stored);
+    if (!in) fail(OIIO::geterror());
+    const OIIO::ImageSpec& spec = in->spec();
+    check({.width = spec.width,
+           .height = spec.height,
+           .depth = spec.depth,
+           .channels = spec.channelnames,
+           .alpha_channel = spec.alpha_channel,
+           .floating = spec.format.is_floating_point()});
+    Image image{.width = spec.width, .height = spec.height, .channels = spec.channelnames, .values = {}};
+    image.values.resize(image.at(0, image.height, 0));
+    if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data())) fail(in->geterror());
+    return image;
+  }
+
+  void writeExr(const std::filesystem::path& file, const Image& image) const override {
+    const auto out = OIIO::ImageOutput::create("exr");
+    if (!out) fail(OIIO::geterror());
+    OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = image.channels;
+    const auto alpha = std::ranges::find(image.channels, "A");
+    spec.alpha_channel = alpha == image.channels.end() ? -1 : static_cast<int>(alpha - image.channels.begin());
+    spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // else the time of writing: the same picture is to be the same bytes
+    if (!out->open(file.string(), spec) || !out->write_image(OIIO::TypeDesc::FLOAT, image.values.data()) ||
+        !out->close())
+      fail(out->geterror());
+  }
+
+  std::string png(int width, int height, int channels, std::span<const std::uint8_t> codes) const override {
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const auto out = OIIO::ImageOutput::create("png");
+    if (!out) fail(OIIO::geterror());
+    OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    if (!out->set_ioproxy(&memory) || !out->open("picture.png", spec) ||
+        !out->write_image(OIIO::TypeDesc::UINT8, codes.data()) || !out->close())
+      fail(out->geterror());
+    return {bytes.begin(), bytes.end()};
+  }
+};
+
+}  // namespace
+}  // namespace sunfleck::detail
+
+extern "C" const sunfleck::detail::ImageCodec* sunfleckImageCodec() {
+  static const sunfleck::detail::OpenImageIoCodec codec;
+  return &codec;
+}
