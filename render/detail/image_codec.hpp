@@ -18,9 +18,9 @@ struct StoredImage {
   bool floating = false;                 // floating-point numbers, else whole ones
 };
 
-// What OpenImageIO does for us. It brings some 240 libraries with it, which take a quarter of a second to load: so it is in
-// a library of its own, loaded when an image is first read or written. All functions throw std::runtime_error with a
-// reason of one line.
+// What OpenImageIO does for us. It brings some 240 libraries with it, which take a quarter of a second to load: so it
+// is in a library of its own, loaded when an image is first read or written. All functions throw std::runtime_error
+// with a reason of one line.
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
