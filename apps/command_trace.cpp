@@ -34,6 +34,7 @@
 #include "render/reference/brf_trace.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
+#include "render/reference/light_picture.hpp"
 #include "render/reference/team_run.hpp"
 #include "render/reference/trace_goal.hpp"
 
@@ -43,6 +44,9 @@ namespace {
 constexpr double kPaths = 4e6;
 // A run that is to reach an error stops here at the latest.
 constexpr double kMostPaths = 1e15;
+// Of a picture by light: paths of light for each sample of a pixel, and the share of the error left to what was
+// scattered once. By these both took what they are worth of the time, for a crown of albedo 0.95.
+constexpr double kLightPaths = 0.5, kErrorOnce = 0.4;
 constexpr std::uint64_t kMostUnits = 1'000'000;  // of each tile or view
 
 const std::array<std::string, kBands> kBandNames{"red", "green", "blue"};
@@ -55,7 +59,7 @@ struct TraceOptions {
   int samples = 64;
   int band = 0;
   float exposure = kExposure;
-  bool all_bands = false, without_wood = false, only_picture = false;
+  bool by_eye = false, all_bands = false, without_wood = false, only_picture = false;
   std::string leaves, picture, cells, spectrum, spectrum_out;
   double cell = 0.25;             // side [m]
   std::vector<float> other_leaf;  // reflectance, transmittance
@@ -183,12 +187,17 @@ class TraceRun {
     const auto samples = static_cast<std::uint64_t>(options_.samples);
     const std::uint64_t per_unit =
         unitSize("picture", "samples per unit", static_cast<std::uint64_t>(samplesPerUnit(samples)));
-    const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit));
+    // What was scattered once has little noise by paths from the camera and costs little; the rest may be had by light.
+    const bool by_light = !options_.by_eye && LightPictureJob::suits(rays_, bands_, pixels);
+    const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit),
+                        by_light ? Followed::once : Followed::all);
     TraceSection& section = store_.section("picture", job);
-    const Spent spent = workOnGroups(job, job.unitsOf(samples), section, "tracing the picture");
+    Spent spent = workOnGroups(job, job.unitsOf(samples), section, "tracing the picture",
+                               by_light ? kErrorOnce * extent_.target : extent_.target);
+    std::vector<CameraResult> results = job.results(section.sums);
+    if (by_light && !interruptedAnywhere(run_.team))
+      results = together(std::move(results), lightPicture(pixels, samples, results, spent));
     if (section.sums.units() == 0) return;
-
-    const std::vector<CameraResult> results = job.results(section.sums);
     const CameraResult& result = results.front();
     if (!options_.picture.empty())
       writeImage(options_.picture, options_.all_bands ? colours(results) : result.radiance, options_.exposure);
@@ -202,6 +211,29 @@ class TraceRun {
     printSpeed(result.paths, spent);
   }
 
+  // What light scattered more than once adds to the picture `once`.
+  std::vector<CameraResult> lightPicture(const PixelRays& pixels, std::uint64_t samples,
+                                         const std::vector<CameraResult>& once, Spent& spent) {
+    const double paths = kLightPaths * static_cast<double>(samples) * static_cast<double>(pixels.width) *
+                         static_cast<double>(pixels.height);
+    const auto count = static_cast<std::uint64_t>(extent_.target > 0. ? kMostPaths : std::max(paths, 64.));
+    const std::uint64_t per_unit = unitSize("picture by light", "paths per unit", pathsPerUnit(count));
+    const LightPictureJob job(rays_, bands_, pixels, per_unit);
+    TraceSection& section = store_.section("picture by light", job);
+    const std::uint64_t units = unitsOf(count, per_unit);
+    section.asked = extent_.target == 0. ? units : 0;
+    std::vector<double> means;
+    for (const CameraResult& band : once) means.push_back(band.mean.value);
+    const double target = std::sqrt(1. - kErrorOnce * kErrorOnce) * extent_.target;
+    const auto error = [&](const TraceSums& sums) { return job.relativeError(sums, means); };
+    const TraceGoal goal =
+        target > 0. ? until(target, error, units) : allOf(partOf(units, extent_.part.number, extent_.part.of));
+    spent.add(work(goal, job, section, "tracing light to the camera"));
+    if (target > 0. && section.sums.units() > 0)
+      tellTarget(section.sums.units() >= kLeastUnits && error(section.sums) <= target);
+    return job.results(section.sums);
+  }
+
   void brf(const std::vector<BrfView>& views) {
     std::vector<ViewDirection> directions;
     for (const BrfView& view : views) directions.push_back(view.direction);
@@ -209,7 +241,7 @@ class TraceRun {
     const std::uint64_t per_unit = unitSize("brf", "paths per unit", pathsPerUnit(paths));
     const BrfJob job(rays_, bands_, directions, per_unit);
     TraceSection& section = store_.section("brf", job);
-    const Spent spent = workOnGroups(job, job.unitsOf(paths), section, "tracing reflectance factors");
+    const Spent spent = workOnGroups(job, job.unitsOf(paths), section, "tracing reflectance factors", extent_.target);
     if (section.sums.units() == 0) return;
 
     const std::vector<BrfResult> results = job.results(section.sums);
@@ -288,18 +320,18 @@ class TraceRun {
   // The same for a job whose tiles or views take as many units as their own noise asks for: `units` in all, or what
   // brings it to the target.
   template <typename Job>
-  Spent workOnGroups(const Job& job, std::uint64_t units, TraceSection& section, const std::string& label) {
-    if (extent_.target == 0.) {
+  Spent workOnGroups(const Job& job, std::uint64_t units, TraceSection& section, const std::string& label,
+                     double target) {
+    if (target == 0.) {
       section.asked = units;
       return work(allOf(partOf(units, extent_.part.number, extent_.part.of)), job, section, label);
     }
     section.asked = 0;
     const TraceGoal goal{
-        .next = [&](const TraceSums& sums,
-                    std::uint64_t seed) { return job.unitsFor(extent_.target, kMostUnits, sums, seed); },
-        .name = fmt::format("error {}", extent_.target)};
+        .next = [&](const TraceSums& sums, std::uint64_t seed) { return job.unitsFor(target, kMostUnits, sums, seed); },
+        .name = fmt::format("error {}", target)};
     const Spent spent = work(goal, job, section, label);
-    tellTarget(job.reached(extent_.target, section.sums));
+    tellTarget(job.reached(target, section.sums));
     return spent;
   }
 
@@ -449,6 +481,8 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
   command->add_option("-o,--leaves", trace->leaves, "CSV to write: irradiance of each leaf and its standard error");
   command->add_option("--picture", trace->picture, "Picture to write: .exr (radiances) or .png");
   command->add_flag("--only-picture", trace->only_picture, "Trace the picture alone")->excludes("--leaves");
+  command->add_flag("--by-eye", trace->by_eye,
+                    "Trace the picture by paths from the camera alone, also where paths of light are less noisy");
   command->add_option("--exposure", trace->exposure, "Factor from radiance to brightness in a .png (default 3)")
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
   CLI::Option* all_bands =

@@ -49,6 +49,8 @@ struct Packet {
   }
 };
 
+}  // namespace
+
 void validate(const PixelRays& rays) {
   require(rays.width > 0 && rays.width <= 65536, "picture width", rays.width, "from 1 to 65536");
   require(rays.height > 0 && rays.height <= 65536, "picture height", rays.height, "from 1 to 65536");
@@ -59,16 +61,15 @@ void validate(const PixelRays& rays) {
       require(std::abs(v[axis]) <= 1e7f, "corner or step of the picture's pixels", v[axis], "finite and at most 1e7 m");
 }
 
-}  // namespace
-
 struct CameraJob::Parts {
   Parts(const RayScene& of, std::vector<TraceLight> of_bands, const PixelRays& of_rays, float ground_height,
-        int samples)
+        int samples, Followed until)
       : scene(of.geometry()),
         bands(std::move(of_bands)),
         rays(of_rays),
         ground(ground_height - scene.origin.z),
         samples_per_unit(samples),
+        followed(until),
         optics(bands, scene),
         light(bands) {
     rays.corner -= scene.origin;
@@ -103,12 +104,13 @@ struct CameraJob::Parts {
   PixelRays rays;  // about the scene's origin
   float ground;    // height about the scene's origin [m]
   int samples_per_unit;
+  Followed followed;
   AnyLanes optics;
   SceneLight light;
 };
 
 CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays, float ground_height,
-                     int samples_per_unit) {
+                     int samples_per_unit, Followed followed) {
   requireFitting(bands, scene);
   validate(rays);
   require(samples_per_unit >= 1 && samples_per_unit <= kMostSamplesPerUnit, "samples per unit", samples_per_unit,
@@ -120,7 +122,7 @@ CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const
   if (geometry.period && has_ground)
     require(ground_height <= geometry.stand_box.low.z, "ground height", ground_height,
             "at most the bottom of a periodic stand, " + std::to_string(geometry.stand_box.low.z));
-  parts_ = std::make_unique<Parts>(scene, std::move(bands), rays, ground_height, samples_per_unit);
+  parts_ = std::make_unique<Parts>(scene, std::move(bands), rays, ground_height, samples_per_unit, followed);
 }
 
 CameraJob::~CameraJob() = default;
@@ -138,11 +140,9 @@ std::uint64_t CameraJob::unitsOf(std::uint64_t samples) const {
 }
 
 TraceIdentity CameraJob::identity() const {
-  const PixelRays& rays = parts_->rays;
-  const auto text = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
   TraceIdentity identity = identityOf(parts_->bands, parts_->scene);
-  identity["camera"] = fmt::format("{} x {} along {}, corner {}, steps {}, {}", rays.width, rays.height,
-                                   text(rays.sight), text(rays.corner), text(rays.right_step), text(rays.down_step));
+  identity["camera"] = textOf(parts_->rays);
+  identity["scattered"] = parts_->followed == Followed::once ? "once" : "at all";
   identity["ground height"] = fmt::format("{}", parts_->ground);
   identity["samples per unit"] = std::to_string(parts_->samples_per_unit);
   return identity;
@@ -155,7 +155,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
   const int band_count = static_cast<int>(parts_->bands.size());
   const double share = 1. / samples, share_of_tile = share / tile.pixels();
   parts_->optics.visit([&](const auto& optics) {
-    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->ground);
+    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->ground, parts_->followed);
     using Lanes = std::remove_cvref_t<decltype(optics.ground().reflectance)>;
     Packet<Lanes::kBands> packet;
     const auto finish = [&] {

@@ -22,6 +22,12 @@ struct PixelRays {
   int width = 0, height = 0;
 };
 
+// Throws InvalidInput on sizes and vectors out of their ranges.
+void validate(const PixelRays& rays);
+
+// What light a picture shows: all, or none that was scattered more than once.
+enum class Followed { all, once };
+
 // Of one band.
 struct CameraResult {
   Image radiance;  // channels "Y": radiance per sun irradiance 1 on a plane facing the sun [1/sr], the sky's itself
@@ -41,7 +47,7 @@ class CameraJob final : public TraceJob {
   //   scene  must outlive the job
   // Throws InvalidInput on invalid light, rays or ground height, and on more than kMostBands bands.
   CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays, float ground_height,
-            int samples_per_unit);
+            int samples_per_unit, Followed followed = Followed::all);
   ~CameraJob() override;
 
   std::size_t bins() const override;

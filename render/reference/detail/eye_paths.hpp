@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "render/reference/camera_trace.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/detail/scene_light.hpp"
@@ -30,12 +31,14 @@ template <int N>
 class EyePaths {
  public:
   //   ground  height of the ground about the scene's origin [m]; none if it is black in all bands
-  EyePaths(const RayScene::Geometry& scene, const SceneOptics<N>& optics, const SceneLight& light, float ground)
+  EyePaths(const RayScene::Geometry& scene, const SceneOptics<N>& optics, const SceneLight& light, float ground,
+           Followed followed = Followed::all)
       : scene_(scene),
         optics_(optics),
         light_(light),
         point_sun_(light.pointSun()),
         wide_(light.wide()),
+        followed_(followed),
         to_sun_(light.toSun()),
         sun_(light.sunIrradiance<N>()),
         ground_(optics.ground().reflectance.largest() > 0.f ? ground : -kInfinity),
@@ -68,7 +71,7 @@ class EyePaths {
       const BandLanes<N> weight = BandLanes<N>::all(1.f);
       if (!dark[i]) addSun(hits[i], sight, lit[i], weight, seen[i].once(hits[i].surface));
       if (wide_) addDrawn(hits[i], sight, weight, random[i], seen[i].once(hits[i].surface));
-      goOn(hits[i], sight, weight, random[i], seen[i]);
+      if (followed_ == Followed::all || wide_) goOn(hits[i], sight, weight, random[i], seen[i]);
     }
   }
 
@@ -137,6 +140,7 @@ class EyePaths {
         if (wide_) addMet(direction, density, weight, scatterings == 1 ? seen.once(first) : seen.more);
         return;
       }
+      if (followed_ == Followed::once) return;
       glm::vec3 lit;
       if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, direction, lit, weight, seen.more);
       if (wide_) addDrawn(hit, direction, weight, random, seen.more);
@@ -188,6 +192,7 @@ class EyePaths {
   const SceneOptics<N>& optics_;
   const SceneLight& light_;
   bool point_sun_, wide_;  // of the light
+  Followed followed_;
   Direction to_sun_;
   BandLanes<N> sun_;  // irradiance of a plane that faces the sun [1]
   float ground_;      // height, -infinity if there is none [m]

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "render/reference/camera_trace.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/trace_job.hpp"
 #include "render/reference/trace_light.hpp"
@@ -59,6 +60,12 @@ inline TraceIdentity identityOf(const std::vector<TraceLight>& bands, const RayS
     for (const LeafOptics& medium : light.of_media)
       identity["optics of media"] += fmt::format("{} {}; ", medium.reflectance, medium.transmittance);
   return identity;
+}
+
+inline std::string textOf(const PixelRays& rays) {
+  const auto text = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
+  return fmt::format("{} x {} along {}, corner {}, steps {}, {}", rays.width, rays.height, text(rays.sight),
+                     text(rays.corner), text(rays.right_step), text(rays.down_step));
 }
 
 }  // namespace sunfleck::detail

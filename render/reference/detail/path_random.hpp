@@ -15,7 +15,7 @@ struct Pair {
 };
 
 // What random numbers are for: those of jobs of different kinds are independent also where their seeds are the same.
-enum class Stream : std::uint32_t { light, picture, reflectance, slab };
+enum class Stream : std::uint32_t { light, picture, reflectance, slab, light_picture };
 
 // A set of paths whose first random numbers are points of one Owen-scrambled Sobol' sequence: together they fill the
 // square more evenly than chance does. Sets of other numbers are scrambled independently.

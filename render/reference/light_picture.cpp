@@ -1,0 +1,207 @@
+#include "render/reference/light_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/require.hpp"
+#include "render/reference/detail/identity_text.hpp"
+#include "render/reference/detail/incident_light.hpp"
+#include "render/reference/detail/pixel_of_point.hpp"
+#include "render/reference/detail/scene_optics.hpp"
+#include "render/reference/trace_effort.hpp"
+
+namespace sunfleck {
+using namespace detail;
+namespace {
+
+// Share of a stand that a picture must show, as its box appears in it, for paths of light to be worth their while.
+constexpr double kLeastShown = 0.5;
+
+template <int N>
+class PicturePaths {
+ public:
+  //   share  of the incident light that a path starts with, by the area of a pixel's beam [1/m^2]
+  //   flux   of each band's incident light [m^2]
+  PicturePaths(const RayScene::Geometry& scene, const IncidentLight& light, const SceneOptics<N>& optics,
+               const PixelOfPoint& pixels, const Direction& to_eye, double share, std::size_t bands, UnitTally& tally)
+      : scene_(scene), light_(light), optics_(optics), pixels_(pixels), to_eye_(to_eye), bands_(bands), tally_(tally) {
+    for (std::size_t band = 0; band < bands; ++band)
+      flux_[static_cast<int>(band)] = static_cast<float>(share * light.flux(static_cast<int>(band)));
+  }
+
+  void trace(PathRandom& random) {
+    auto [from, direction, weight] = light_.enter<N>(random);
+    for (int scatterings = 0; scatterings < kMostScatterings; ++scatterings) {
+      const Hit hit = scene_.meet(from, direction, random);
+      if (hit.surface == Surface::none) return;
+      if (scatterings > 0) show(hit, direction, weight);
+      const Onward onward = optics_.scatter(hit, direction, weight, random);
+      if (onward.fate == Fate::absorbed) return;
+      from = scene_.leave(hit.position, onward.side);
+      direction = onward.direction;
+    }
+  }
+
+ private:
+  // With flux F arriving, what is met sends F f cos per solid angle to the camera, the BRDF or BTDF f being the same
+  // both ways: over the area of the pixel's beam, its radiance.
+  void show(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight) {
+    const std::optional<std::size_t> pixel = pixels_.number(hit.position);
+    if (!pixel) return;
+    BandLanes<N> radiance = optics_.sent(hit, direction, to_eye_);
+    radiance *= weight;
+    if (!(radiance.largest() > 0.f)) return;
+    const glm::vec3 side = glm::dot(hit.normal, to_eye_) > 0.f ? hit.normal : -hit.normal;
+    const glm::vec3 from = scene_.leave(hit.position, side);
+    if (scene_.blocked(from, to_eye_)) return;
+    if (!scene_.media.empty()) radiance *= scene_.transmittance(from, to_eye_);
+    radiance *= flux_;
+    for (std::size_t band = 0; band < bands_; ++band)
+      tally_.add(*pixel * bands_ + band, double{radiance[static_cast<int>(band)]});
+  }
+
+  const RayScene::Geometry& scene_;
+  const IncidentLight& light_;
+  const SceneOptics<N>& optics_;
+  const PixelOfPoint& pixels_;
+  Direction to_eye_;
+  BandLanes<N> flux_;  // of a path, by the area of a pixel's beam [1]
+  std::size_t bands_;
+  UnitTally& tally_;
+};
+
+}  // namespace
+
+struct LightPictureJob::Parts {
+  Parts(const RayScene& of, std::vector<TraceLight> of_bands, const PixelRays& of_rays, std::uint64_t per_unit)
+      : scene(of.geometry()),
+        bands(std::move(of_bands)),
+        rays(of_rays),
+        paths_per_unit(per_unit),
+        light(scene, bands),
+        optics(bands, scene) {
+    rays.corner -= scene.origin;
+  }
+  std::size_t pixels() const { return static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height); }
+
+  const RayScene::Geometry& scene;
+  std::vector<TraceLight> bands;
+  PixelRays rays;  // about the scene's origin
+  std::uint64_t paths_per_unit;
+  IncidentLight light;
+  AnyLanes optics;
+};
+
+bool LightPictureJob::suits(const RayScene& scene, const std::vector<TraceLight>& bands, const PixelRays& rays) {
+  const RayScene::Geometry& geometry = scene.geometry();
+  if (geometry.period || std::ranges::any_of(bands, [](const auto& b) { return b.largestGroundAlbedo() > 0.f; }))
+    return false;
+  const PixelOfPoint pixels(rays);
+  const Bounds& box = scene.box();
+  glm::vec2 low(std::numeric_limits<float>::infinity()), high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec2 at = pixels.place({corner & 1 ? box.low.x : box.high.x, corner & 2 ? box.low.y : box.high.y,
+                                       corner & 4 ? box.low.z : box.high.z});
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  }
+  const glm::dvec2 shown = glm::max(
+      glm::dvec2(0.), glm::dvec2(glm::min(high, glm::vec2(rays.width, rays.height)) - glm::max(low, glm::vec2(0.f))));
+  const glm::dvec2 all(high - low);
+  return shown.x * shown.y >= kLeastShown * all.x * all.y;
+}
+
+LightPictureJob::LightPictureJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays,
+                                 std::uint64_t paths_per_unit) {
+  requireFitting(bands, scene);
+  validate(rays);
+  require(paths_per_unit >= 1 && paths_per_unit <= kMostUnitPaths, "paths per unit", paths_per_unit,
+          "from 1 to " + std::to_string(kMostUnitPaths));
+  if (scene.geometry().period) throw InvalidInput("picture by paths of light: must be of a stand without period");
+  for (const TraceLight& light : bands)
+    require(light.largestGroundAlbedo() == 0.f, "ground albedo", light.largestGroundAlbedo(),
+            "0 in a picture by paths of light");
+  parts_ = std::make_unique<Parts>(scene, std::move(bands), rays, paths_per_unit);
+}
+
+LightPictureJob::~LightPictureJob() = default;
+
+// Of each pixel, each band.
+std::size_t LightPictureJob::bins() const {
+  return parts_->pixels() * parts_->bands.size();
+}
+
+TraceIdentity LightPictureJob::identity() const {
+  TraceIdentity identity = identityOf(parts_->bands, parts_->scene);
+  identity["camera"] = textOf(parts_->rays);
+  identity["paths per unit"] = std::to_string(parts_->paths_per_unit);
+  return identity;
+}
+
+void LightPictureJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const {
+  const std::uint64_t count = parts_->paths_per_unit;
+  const PixelOfPoint pixels(parts_->rays);
+  parts_->optics.visit([&](const auto& optics) {
+    PicturePaths paths(parts_->scene, parts_->light, optics, pixels, -parts_->rays.sight,
+                       1. / (static_cast<double>(count) * pixels.beam()), parts_->bands.size(), tally);
+    const EvenSet set(Stream::light_picture, seed, unit);
+    for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
+      PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));
+      paths.trace(random);
+    }
+  });
+}
+
+std::vector<CameraResult> LightPictureJob::results(const TraceSums& sums) const {
+  const PixelRays& rays = parts_->rays;
+  const std::size_t pixels = parts_->pixels(), bands = parts_->bands.size();
+  std::vector<CameraResult> results;
+  for (std::size_t band = 0; band < bands; ++band) {
+    CameraResult& result = results.emplace_back();
+    result.radiance = {.width = rays.width, .height = rays.height, .channels = {"Y", "single.Y"}, .values = {}};
+    result.standard_error = {.width = rays.width, .height = rays.height, .channels = {"Y"}, .values = {}};
+    double sum = 0., variance = 0.;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      const Estimate radiance = sums.estimate(pixel * bands + band);
+      result.radiance.values.insert(result.radiance.values.end(), {static_cast<float>(radiance.value), 0.f});
+      result.standard_error.values.push_back(static_cast<float>(radiance.standard_error));
+      sum += radiance.value;
+      variance += std::pow(radiance.standard_error, 2);
+    }
+    const auto count = static_cast<double>(pixels);
+    result.mean = {sum / count, std::sqrt(variance) / count};
+    result.paths = sums.units() * parts_->paths_per_unit;
+  }
+  return results;
+}
+
+std::vector<CameraResult> together(std::vector<CameraResult> once, const std::vector<CameraResult>& more) {
+  const auto add = [](Estimate& to, const Estimate& other) {
+    to = {to.value + other.value, std::hypot(to.standard_error, other.standard_error)};
+  };
+  for (std::size_t band = 0; band < once.size(); ++band) {
+    CameraResult& sum = once[band];
+    const CameraResult& other = more[band];
+    for (std::size_t i = 0; i < sum.radiance.values.size(); ++i) sum.radiance.values[i] += other.radiance.values[i];
+    for (std::size_t i = 0; i < sum.standard_error.values.size(); ++i)
+      sum.standard_error.values[i] = std::hypot(sum.standard_error.values[i], other.standard_error.values[i]);
+    add(sum.mean, other.mean);
+    sum.paths += other.paths;
+  }
+  return once;
+}
+
+double LightPictureJob::relativeError(const TraceSums& sums, const std::vector<double>& once) const {
+  double largest = 0.;
+  const std::vector<CameraResult> pictures = results(sums);
+  for (std::size_t band = 0; band < pictures.size(); ++band) {
+    const Estimate& mean = pictures[band].mean;
+    const double whole = mean.value + once[band];
+    if (whole > 0.)
+      largest = std::max(largest, mean.standard_error * std::sqrt(static_cast<double>(parts_->pixels())) / whole);
+  }
+  return largest;
+}
+
+}  // namespace sunfleck
