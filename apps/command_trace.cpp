@@ -211,29 +211,6 @@ class TraceRun {
     printSpeed(result.paths, spent);
   }
 
-  // What light scattered more than once adds to the picture `once`.
-  std::vector<CameraResult> lightPicture(const PixelRays& pixels, std::uint64_t samples,
-                                         const std::vector<CameraResult>& once, Spent& spent) {
-    const double paths = kLightPaths * static_cast<double>(samples) * static_cast<double>(pixels.width) *
-                         static_cast<double>(pixels.height);
-    const auto count = static_cast<std::uint64_t>(extent_.target > 0. ? kMostPaths : std::max(paths, 64.));
-    const std::uint64_t per_unit = unitSize("picture by light", "paths per unit", pathsPerUnit(count));
-    const LightPictureJob job(rays_, bands_, pixels, per_unit);
-    TraceSection& section = store_.section("picture by light", job);
-    const std::uint64_t units = unitsOf(count, per_unit);
-    section.asked = extent_.target == 0. ? units : 0;
-    std::vector<double> means;
-    for (const CameraResult& band : once) means.push_back(band.mean.value);
-    const double target = std::sqrt(1. - kErrorOnce * kErrorOnce) * extent_.target;
-    const auto error = [&](const TraceSums& sums) { return job.relativeError(sums, means); };
-    const TraceGoal goal =
-        target > 0. ? until(target, error, units) : allOf(partOf(units, extent_.part.number, extent_.part.of));
-    spent.add(work(goal, job, section, "tracing light to the camera"));
-    if (target > 0. && section.sums.units() > 0)
-      tellTarget(section.sums.units() >= kLeastUnits && error(section.sums) <= target);
-    return job.results(section.sums);
-  }
-
   void brf(const std::vector<BrfView>& views) {
     std::vector<ViewDirection> directions;
     for (const BrfView& view : views) directions.push_back(view.direction);
@@ -293,6 +270,29 @@ class TraceRun {
       cpu_seconds += more.cpu_seconds;
     }
   };
+
+  // What light scattered more than once adds to the picture `once`.
+  std::vector<CameraResult> lightPicture(const PixelRays& pixels, std::uint64_t samples,
+                                         const std::vector<CameraResult>& once, Spent& spent) {
+    const double paths = kLightPaths * static_cast<double>(samples) * static_cast<double>(pixels.width) *
+                         static_cast<double>(pixels.height);
+    const auto count = static_cast<std::uint64_t>(extent_.target > 0. ? kMostPaths : std::max(paths, 64.));
+    const std::uint64_t per_unit = unitSize("picture by light", "paths per unit", pathsPerUnit(count));
+    const LightPictureJob job(rays_, bands_, pixels, per_unit);
+    TraceSection& section = store_.section("picture by light", job);
+    const std::uint64_t units = unitsOf(count, per_unit);
+    section.asked = extent_.target == 0. ? units : 0;
+    std::vector<double> means;
+    for (const CameraResult& band : once) means.push_back(band.mean.value);
+    const double target = std::sqrt(1. - kErrorOnce * kErrorOnce) * extent_.target;
+    const auto error = [&](const TraceSums& sums) { return job.relativeError(sums, means); };
+    const TraceGoal goal =
+        target > 0. ? until(target, error, units) : allOf(partOf(units, extent_.part.number, extent_.part.of));
+    spent.add(work(goal, job, section, "tracing light to the camera"));
+    if (target > 0. && section.sums.units() > 0)
+      tellTarget(section.sums.units() >= kLeastUnits && error(section.sums) <= target);
+    return job.results(section.sums);
+  }
 
   // A size of a unit that a run began with is kept, whatever it is told on going on. Rank 0 knows.
   std::uint64_t unitSize(const std::string& section, const std::string& name, std::uint64_t fresh) {
