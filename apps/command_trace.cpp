@@ -3,25 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
-#include <string_view>
 
-#include "apps/brf_options.hpp"
 #include "apps/brf_output.hpp"
 #include "apps/cell_output.hpp"
 #include "apps/commands.hpp"
-#include "apps/pictures.hpp"
 #include "apps/run_identity.hpp"
-#include "apps/run_part.hpp"
-#include "apps/scene_options.hpp"
-#include "apps/slab_options.hpp"
 #include "apps/spectrum.hpp"
 #include "apps/team.hpp"
 #include "apps/terminal.hpp"
+#include "apps/trace_options.hpp"
 #include "apps/trace_output.hpp"
 #include "apps/version.hpp"
 #include "core/elapsed.hpp"
@@ -47,56 +42,11 @@ constexpr double kMostPaths = 1e15;
 // Of a picture by light: paths of light for each sample of a pixel, and the share of the error left to what was
 // scattered once. By these both took what they are worth of the time, for a crown of albedo 0.95.
 constexpr double kLightPaths = 0.5, kErrorOnce = 0.4;
+// And of the time that is left, of which the rest is for the light scattered more often.
+constexpr double kTimeOnce = 0.2;
 constexpr std::uint64_t kMostUnits = 1'000'000;  // of each tile or view
 
 const std::array<std::string, kBands> kBandNames{"red", "green", "blue"};
-
-struct TraceOptions {
-  SceneOptions scene;
-  CameraOptions camera;
-  std::optional<double> paths;  // 4e6, or without end where there is a target
-  BrfOptions brf;
-  int samples = 64;
-  int band = 0;
-  float exposure = kExposure;
-  bool by_eye = false, all_bands = false, without_wood = false, only_picture = false;
-  std::string leaves, picture, cells, spectrum, spectrum_out;
-  double cell = 0.25;             // side [m]
-  std::vector<float> other_leaf;  // reflectance, transmittance
-  std::optional<float> turbid;    // side of a cell [m]
-  std::string checkpoint, target, time, part, compare;
-  double write_every = 60.;  // [s]
-};
-
-// How long and how far a run goes.
-struct Extent {
-  double target = 0.;  // relative error to reach; 0: none
-  double seconds = std::numeric_limits<double>::infinity();
-  RunPart part;
-};
-
-// "90", "90s", "1.5m", "2h" in seconds.
-double secondsOf(const std::string& text) {
-  double value = 0.;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
-  const double scale = unit.empty() || unit == "s" ? 1. : unit == "m" ? 60. : unit == "h" ? 3600. : 0.;
-  if (error != std::errc() || !(value * scale > 0.) || !(value * scale < 1e9))
-    throw InvalidInput("--time " + text + ": must be seconds, or a number with s, m or h, above 0");
-  return value * scale;
-}
-
-Extent extentOf(const TraceOptions& options) {
-  Extent extent;
-  if (!options.target.empty()) {
-    const std::optional<double> target = shareOf(options.target);
-    if (!target) throw InvalidInput("--target " + options.target + ": must be a relative error such as 0.5% or 0.005");
-    extent.target = *target;
-  }
-  if (!options.time.empty()) extent.seconds = secondsOf(options.time);
-  if (!options.part.empty()) extent.part = partNamed(options.part);
-  return extent;
-}
 
 class TraceRun {
  public:
@@ -185,18 +135,29 @@ class TraceRun {
   void picture() {
     const PixelRays pixels = pixelRays(scene_);
     const auto samples = static_cast<std::uint64_t>(options_.samples);
-    const std::uint64_t per_unit =
-        unitSize("picture", "samples per unit", static_cast<std::uint64_t>(samplesPerUnit(samples)));
+    // A run against the clock goes by small units, so that it gets through all tiles early.
+    constexpr std::uint64_t kSamplesAgainstTheClock = 16;
+    const bool timed = std::isfinite(extent_.seconds);
+    const std::uint64_t per_unit = unitSize(
+        "picture", "samples per unit",
+        static_cast<std::uint64_t>(samplesPerUnit(timed ? std::min(samples, kSamplesAgainstTheClock) : samples)));
     // What was scattered once has little noise by paths from the camera and costs little; the rest may be had by light.
     const bool by_light = !options_.by_eye && LightPictureJob::suits(rays_, bands_, pixels);
     const CameraJob job(rays_, bands_, pixels, bounds(scene_).low.z, static_cast<int>(per_unit),
                         by_light ? Followed::once : Followed::all);
     TraceSection& section = store_.section("picture", job);
     Spent spent = workOnGroups(job, job.unitsOf(samples), section, "tracing the picture",
-                               by_light ? kErrorOnce * extent_.target : extent_.target);
+                               by_light ? kErrorOnce * extent_.target : extent_.target, by_light ? kTimeOnce : 1.);
     std::vector<CameraResult> results = job.results(section.sums);
-    if (by_light && !interruptedAnywhere(run_.team))
-      results = together(std::move(results), lightPicture(pixels, samples, results, spent));
+    if (by_light) {
+      const std::vector<CameraResult> more = lightPicture(pixels, samples, results, spent);
+      if (run_.team && run_.team->rank() > 0) return;
+      if (more.front().paths == 0 || !coversAll(section.sums)) {
+        fmt::print(stderr, "sunfleck: no picture: ended before all kinds of its light had been traced\n");
+        return;
+      }
+      results = together(std::move(results), more);
+    }
     if (section.sums.units() == 0) return;
     const CameraResult& result = results.front();
     if (!options_.picture.empty())
@@ -303,10 +264,19 @@ class TraceRun {
     return fresh;
   }
 
-  Spent work(const TraceGoal& goal, const TraceJob& job, TraceSection& section, const std::string& label) {
+  // Whether every tile has been traced.
+  static bool coversAll(const TraceSums& sums) {
+    for (std::uint64_t group = 0; group < sums.groups(); ++group)
+      if (sums.units(group) == 0) return false;
+    return true;
+  }
+
+  //   time  share of what is left of it
+  Spent work(const TraceGoal& goal, const TraceJob& job, TraceSection& section, const std::string& label,
+             double time = 1.) {
     Spent spent{.units_before = section.sums.units()};
     TraceGoal timed = goal;
-    timed.seconds = extent_.seconds - begun_.seconds();
+    timed.seconds = time * (extent_.seconds - begun_.seconds());
     const Elapsed elapsed;
     if (!pursue(timed, job, section, store_, run_.seed, run_.threads, terminalProgress(label, run_.quiet), run_.team) &&
         !interruptedAnywhere(run_.team))
@@ -321,16 +291,16 @@ class TraceRun {
   // brings it to the target.
   template <typename Job>
   Spent workOnGroups(const Job& job, std::uint64_t units, TraceSection& section, const std::string& label,
-                     double target) {
+                     double target, double time = 1.) {
     if (target == 0.) {
       section.asked = units;
-      return work(allOf(partOf(units, extent_.part.number, extent_.part.of)), job, section, label);
+      return work(allOf(partOf(units, extent_.part.number, extent_.part.of)), job, section, label, time);
     }
     section.asked = 0;
     const TraceGoal goal{
         .next = [&](const TraceSums& sums, std::uint64_t seed) { return job.unitsFor(target, kMostUnits, sums, seed); },
         .name = fmt::format("error {}", target)};
-    const Spent spent = work(goal, job, section, label);
+    const Spent spent = work(goal, job, section, label, time);
     tellTarget(job.reached(target, section.sums));
     return spent;
   }
@@ -468,84 +438,7 @@ void addTrace(CLI::App& app, RunOptions& options, int& status) {
                  "Monte Carlo: where the sun's light ends up, leaf by leaf, with standard errors; and what a "
                  "camera sees of it. mpirun -n N sunfleck trace ... computes the same by N processes",
                  Ranks::any);
-  addSceneOptions(*command, trace->scene);
-  addCameraOptions(*command, trace->camera, "--look-at");
-  command
-      ->add_option("--paths", trace->paths,
-                   "Paths of light from the sun (default 4e6; with --target, as many as it takes)")
-      ->check(numberIn(64., 1e15, "in [64, 1e15]"));
-  command->add_option("--samples", trace->samples, "Paths through each pixel of the picture (default 64)")
-      ->transform(wholeNumberIn(1., 1e6, "a whole number, 1 to 1e6"));
-  command->add_option("--band", trace->band, "Band of the scene's optics: 0, 1 or 2, red, green or blue (default 0)")
-      ->check(numberIn(0., 2., "0, 1 or 2"));
-  command->add_option("-o,--leaves", trace->leaves, "CSV to write: irradiance of each leaf and its standard error");
-  command->add_option("--picture", trace->picture, "Picture to write: .exr (radiances) or .png");
-  command->add_flag("--only-picture", trace->only_picture, "Trace the picture alone")->excludes("--leaves");
-  command->add_flag("--by-eye", trace->by_eye,
-                    "Trace the picture by paths from the camera alone, also where paths of light are less noisy");
-  command->add_option("--exposure", trace->exposure, "Factor from radiance to brightness in a .png (default 3)")
-      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
-  CLI::Option* all_bands =
-      command->add_flag("--all-bands", trace->all_bands, "Trace the three bands of the scene on the same paths")
-          ->excludes("--band");
-  command
-      ->add_option(
-          "--cells", trace->cells,
-          "CSV or .vdb to write: light absorbed by leaves and by wood in each cell of the stand's box, or of one "
-          "period, and its standard error")
-      ->excludes("--only-picture");
-  command->add_option("--cell", trace->cell, "Side of these cells (default 0.25 m)")
-      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6] m"))
-      ->needs("--cells");
-  CLI::Option* spectrum =
-      command
-          ->add_option("--spectrum", trace->spectrum,
-                       "CSV of any number of bands, the optics of all trees in each: name,leaf_reflectance,"
-                       "leaf_transmittance[,wood_reflectance[,ground_albedo]]. No picture is traced")
-          ->excludes(all_bands)
-          ->excludes("--picture")
-          ->excludes("--only-picture");
-  command->add_option("--spectrum-out", trace->spectrum_out, "CSV to write: the shares of the light of each of them")
-      ->needs(spectrum);
-  addBrfOptions(*command, trace->brf);
-  for (const char* other : {"--brf", "--brf-views", "--only-brf"}) spectrum->excludes(other);
-  command
-      ->add_option("--compare", trace->compare,
-                   "CSV file name,value,standard_error of figures to compare with: names as in --json, brf:ZENITH of "
-                   "--brf, brf:ZENITH:AZIMUTH of --brf-views, brf_albedo. Tells per cent, z and the score of RAMI-IV")
-      ->excludes(spectrum)
-      ->excludes("--all-bands");
-  command
-      ->add_option("--other-leaf", trace->other_leaf,
-                   "Tell the shares also for leaves of this reflectance and transmittance, from the same paths")
-      ->expected(2)
-      ->check(numberIn(0., 1., "in [0, 1]"))
-      ->excludes(all_bands)
-      ->excludes(spectrum)
-      ->excludes("--only-picture");
-  command->add_option(
-      "--checkpoint", trace->checkpoint,
-      "File of the run's state (.trace): written now and then and at the end. When it is there, the run "
-      "goes on from it");
-  command->add_option("--write-every", trace->write_every, "Seconds between two writes of that file (default 60)")
-      ->check(numberIn(0., 1e9, "in [0, 1e9] s"))
-      ->needs("--checkpoint");
-  CLI::Option* target = command->add_option("--target", trace->target,
-                                            "Stop at this relative error, such as 0.5%, of all shares above 1 %, of "
-                                            "every view, and of the picture's pixels (root mean square, "
-                                            "by the mean)");
-  command->add_option("--time", trace->time, "Stop after so long: seconds, or with m or h, such as 10m");
-  command
-      ->add_option("--part", trace->part, "Compute the K-th of N equal parts, K/N, for sunfleck merge to put together")
-      ->needs("--checkpoint")
-      ->excludes(target);
-  command
-      ->add_option("--turbid", trace->turbid,
-                   "Trace the leaves of the trees as a turbid medium: their density and orientation in cells of this "
-                   "side, in metres. Wood stays")
-      ->check(numberIn(2e-5, 1e6, "in [2e-5, 1e6] m"))
-      ->excludes("--leaves");
-  command->add_flag("--without-wood", trace->without_wood, "Leave the wood out");
+  addTraceOptions(*command, *trace);
   command->callback([trace, &options, &status] { status = runTrace(*trace, options); });
 }
 

@@ -13,7 +13,7 @@
 #include "plants/weber_penn.hpp"
 #include "render/detail/scene_media_file.hpp"
 #include "render/detail/scene_table.hpp"
-#include "render/detail/toml_text.hpp"
+#include "render/detail/toml_file.hpp"
 #include "render/image_file.hpp"
 #include "sky/preetham.hpp"
 #include "sky/sky_models.hpp"
@@ -305,19 +305,6 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   return scene;
 }
 
-// Whatever is wrong, the message begins with the file.
-Scene readToml(const std::filesystem::path& file) {
-  try {
-    return readTable(toml::parse(detail::tomlText(file), file.string()), file);
-  } catch (const toml::parse_error& e) {
-    throw InvalidInput(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
-  } catch (const InvalidInput& e) {
-    const std::string message = e.what();
-    if (message.starts_with(file.string())) throw;
-    throw InvalidInput(file.string() + ": " + message);
-  }
-}
-
 std::optional<Scene> builtin(const std::string& name) {
   Scene scene;
   scene.name = scene.origin = name;
@@ -365,7 +352,11 @@ std::vector<std::string> builtinScenes() {
 
 Scene readScene(const std::string& name_or_file, const ImportRules& rules) {
   const std::filesystem::path file(name_or_file);
-  if (file.extension() == ".toml") return readToml(file);
+  if (file.extension() == ".toml") {
+    Scene scene;
+    detail::readToml(file, [&](const toml::table& table) { scene = readTable(table, file); });
+    return scene;
+  }
   if (file.has_extension()) {
     Scene scene;
     scene.name = file.stem().string();

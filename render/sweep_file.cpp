@@ -10,7 +10,7 @@
 
 #include "core/require.hpp"
 #include "render/detail/scene_table.hpp"
-#include "render/detail/toml_text.hpp"
+#include "render/detail/toml_file.hpp"
 
 namespace sunfleck {
 namespace {
@@ -141,15 +141,9 @@ std::string SweepFile::sceneFile(std::size_t scene) const {
 }
 
 SweepFile readSweepFile(const std::filesystem::path& file) {
-  try {
-    return readTable(toml::parse(detail::tomlText(file), file.string()), file);
-  } catch (const toml::parse_error& e) {
-    throw InvalidInput(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
-  } catch (const InvalidInput& e) {
-    const std::string message = e.what();
-    if (message.starts_with(file.string())) throw;
-    throw InvalidInput(file.string() + ": " + message);
-  }
+  SweepFile sweep;
+  detail::readToml(file, [&](const toml::table& table) { sweep = readTable(table, file); });
+  return sweep;
 }
 
 std::string sweepFileHelp() {

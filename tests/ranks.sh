@@ -33,6 +33,16 @@ done
 ranks 2 $run --target 4% >target.json 2>stderr.txt || fail "--target over ranks: $(cat stderr.txt)"
 [ "$(shares target.json)" = "$(shares alone_target.json)" ] || fail "--target: $(diff target.json alone_target.json)"
 
+# Without a period over black ground a picture comes by paths of light.
+for target in "" "--target 4%"; do
+  light="trace two.obj --only-picture --sun-zenith 30 --elevation 60 --samples 16 --size 20 20 --json --threads 1 $target"
+  "$program" $light --checkpoint alone_light.trace >alone_light.json || fail "$light"
+  ranks 2 $light --checkpoint light.trace >light.json 2>stderr.txt || fail "$light over ranks: $(cat stderr.txt)"
+  [ "$(shares light.json)" = "$(shares alone_light.json)" ] || fail "$light: $(diff light.json alone_light.json)"
+  cmp -s light.trace alone_light.trace || fail "$light: the checkpoint differs"
+  rm -f ./*light.trace
+done
+
 # Killed and stopped in the middle it goes on, also as another number of ranks.
 long="trace leaf.obj --period 2 2 --paths 4e6 --json --threads 1"
 "$program" $long --checkpoint long.trace >long.json || fail "$long"

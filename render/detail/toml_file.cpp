@@ -1,4 +1,4 @@
-#include "render/detail/toml_text.hpp"
+#include "render/detail/toml_file.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,10 @@
 #include "core/require.hpp"
 
 namespace sunfleck::detail {
+namespace {
 
-std::string tomlText(const std::filesystem::path& file) {
+// toml++ keeps a table within a table for every dot of a key, without bound; no key of ours has more than one.
+std::string textOf(const std::filesystem::path& file) {
   constexpr int kMostDots = 32;
   if (!std::filesystem::is_regular_file(file)) throw InvalidInput(file.string() + ": must be a file that can be read");
   std::ifstream in(file, std::ios::binary);
@@ -25,6 +27,20 @@ std::string tomlText(const std::filesystem::path& file) {
           fmt::format("{}:{}: more than {} dots on end: must be a number or a key", file.string(), line, kMostDots));
   }
   return text;
+}
+
+}  // namespace
+
+void readToml(const std::filesystem::path& file, const std::function<void(const toml::table&)>& read) {
+  try {
+    read(toml::parse(textOf(file), file.string()));
+  } catch (const toml::parse_error& e) {
+    throw InvalidInput(fmt::format("{}:{}: {}", file.string(), e.source().begin.line, e.description()));
+  } catch (const InvalidInput& e) {
+    const std::string message = e.what();
+    if (message.starts_with(file.string())) throw;
+    throw InvalidInput(file.string() + ": " + message);
+  }
 }
 
 }  // namespace sunfleck::detail
