@@ -81,7 +81,7 @@ void StandGeometry::update(const Scene& scene, Model model, std::optional<std::s
     light_ = &stand_->lightMap(0, 0);
   }
   compensation_.clear();
-  if (model != Model::sppg) return;
+  if (!needsCompensation(model)) return;
   const Stopwatch watch(compensation_seconds_);
   const std::vector<std::size_t> all = stand_->allInstances();
   const std::span<const std::size_t> wanted = trees.value_or(all);
