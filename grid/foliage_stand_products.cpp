@@ -81,6 +81,7 @@ void FoliageStand::prepareDepths(std::span<const std::size_t> instances, bool wi
     graph_.touchAll(light_axes_);
   }
   requireMemory(instances, standing);
+  constexpr auto wood = DeepOpacityMap::Wood::first_and_last;
   std::vector<std::size_t> members;
   for (const std::size_t p : standing)
     for (std::size_t axis = 0; axis < axes; ++axis) members.push_back(p * axes + axis);
@@ -89,7 +90,7 @@ void FoliageStand::prepareDepths(std::span<const std::size_t> instances, bool wi
       [&](std::size_t i) {
         Prototype& p = prototypes_[i / axes];
         p.axes[i % axes].emplace(
-            p.cells, DeepOpacityMap(*p.mesh, effort_.axes[i % axes], effort_.sample_resolution, false), seen_from_);
+            p.cells, DeepOpacityMap(*p.mesh, effort_.axes[i % axes], effort_.sample_resolution, wood), seen_from_);
       },
       progress);
   if (with_lights) {

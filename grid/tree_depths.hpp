@@ -23,6 +23,10 @@ class TreeDepths {
   // the cell's volume, sampled by the map's lines through it, exact along each. In steps; for all cells, active or not.
   std::span<const FixedDepth> beyond() const { return beyond_; }
   std::span<const FixedDepth> before() const { return before_; }
+  // (D13) Share of each of its own cells from which the tree's wood does not hide what lies outward along the axis, and
+  // against it [1]. Empty unless the map tells of the last wood.
+  std::span<const float> openBeyond() const { return open_beyond_; }
+  std::span<const float> openBefore() const { return open_before_; }
   // Adds what this tree, displaced by `displacement` [m] from the tree of `receiver`, puts before the receiver's active
   // cells, `times` times: -1 takes it away again. `receiver` must have the same axes.
   //   grid, receiver_grid  of this tree and of the receiver
@@ -60,6 +64,7 @@ class TreeDepths {
 
   Axes axes_;
   std::vector<FixedDepth> beyond_, before_;
+  std::vector<float> open_beyond_, open_before_;
   std::vector<Picture> pictures_;               // as seen from each kind of cells
   CellGrid parts_;                              // parts of the cells, and as many around them; all are told of
   std::vector<std::vector<Depths>> within_;     // at the centres of these parts, for each kind of cells
