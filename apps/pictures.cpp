@@ -6,7 +6,7 @@
 namespace sunfleck::apps {
 
 Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress) {
-  requireModelled(scene);
+  require(scene.kinds.size() == 1, "number of kinds of trees", scene.kinds.size(), "1 for pictures by the models");
   gl::ShadingData data{.sun = &stand.light(0, 0), .cells = &stand.cells(0)};
   std::vector<std::vector<float>> none(scene.stand.trees.size());
   for (std::size_t tree = 0; tree < none.size(); ++tree) {

@@ -19,12 +19,13 @@ typedef float Four __attribute__((vector_size(16)));
 
 // What some lines pass.
 struct Passed {
-  std::size_t lanes, steps = 0;
-  std::vector<float> begin, last, ends;
-  std::vector<std::int32_t> parts;
+  std::size_t lanes;
+  std::vector<float> begin, end, length;
+  std::vector<std::int32_t> count, part;
 
   Passed(std::size_t of_lanes, std::size_t most_steps)
-      : lanes(of_lanes), begin(lanes), last(lanes), ends(lanes * most_steps), parts(lanes * most_steps) {}
+      : lanes(of_lanes), begin(lanes), end(lanes * most_steps), length(end.size()), count(lanes), part(end.size()) {}
+  PassedParts room() { return {begin.data(), count.data(), part.data(), end.data(), length.data()}; }
 };
 
 // Sums of a share of the lines. A line that grazes the box's rim may by rounding go on beside it for a millionth of a
@@ -48,33 +49,27 @@ struct Wood {
 };
 
 void addLine(const Passed& passed, std::size_t lane, std::span<const Crossing> line, const Wood& wood, Share& share) {
-  const float last = passed.last[lane];
-  float at = passed.begin[lane];
-  if (!(at < last)) return;
-  const auto all = static_cast<float>(line.size());
-  const bool has_wood = wood.first < kInfinity;
+  const auto count = static_cast<std::size_t>(passed.count[lane]) * passed.lanes;
+  if (line.empty())
+    for (std::size_t i = lane; i < count; i += passed.lanes)
+      share.sums[share.at(passed.part[i])][0] += passed.length[i];
   std::size_t met = 0;
-  while (met < line.size() && line[met].depth < at) ++met;
-  float next = met < line.size() ? line[met].depth : kInfinity;
-  Four per_metre{1.f, static_cast<float>(met), all, 0.f};
-  const float* left = passed.ends.data() + lane;
-  const std::int32_t* of_line = passed.parts.data() + lane;
-  for (std::size_t step = 0; step < passed.steps; ++step, left += passed.lanes, of_line += passed.lanes) {
-    const float end = std::min(std::max(*left, at), last);
-    const std::size_t part = share.at(*of_line);
-    share.sums[part] += per_metre * (end - at);
-    if (next < end) {
-      float before = 0.f;
-      for (; met < line.size() && line[met].depth < end; ++met) before += end - line[met].depth;
-      next = met < line.size() ? line[met].depth : kInfinity;
-      share.sums[part] += Four{0.f, before, 0.f, 0.f};
-      per_metre = Four{1.f, static_cast<float>(met), all, 0.f};
-    }
-    if (has_wood)
-      share.wood[part] +=
-          glm::vec2(std::max(0.f, end - std::max(at, wood.first)), std::max(0.f, std::min(end, wood.last) - at));
-    if (!(*left < last)) return;
-    at = end;
+  while (met < line.size() && line[met].depth < passed.begin[lane]) ++met;
+  Four per_metre{1.f, static_cast<float>(met), static_cast<float>(line.size()), 0.f};
+  for (std::size_t i = lane; i < count && !line.empty(); i += passed.lanes) {
+    Four& sum = share.sums[share.at(passed.part[i])];
+    sum += per_metre * passed.length[i];
+    if (met == line.size() || !(line[met].depth < passed.end[i])) continue;
+    float before = 0.f;
+    for (; met < line.size() && line[met].depth < passed.end[i]; ++met) before += passed.end[i] - line[met].depth;
+    sum += Four{0.f, before, 0.f, 0.f};
+    per_metre = Four{1.f, static_cast<float>(met), static_cast<float>(line.size()), 0.f};
+  }
+  if (wood.first == kInfinity) return;
+  for (std::size_t i = lane; i < count; i += passed.lanes) {
+    const float begin = passed.end[i] - passed.length[i];
+    share.wood[share.at(passed.part[i])] += glm::vec2(std::max(0.f, passed.end[i] - std::max(begin, wood.first)),
+                                                      std::max(0.f, std::min(passed.end[i], wood.last) - begin));
   }
 }
 
@@ -118,8 +113,7 @@ std::vector<PartSums> sumsOverParts(const CellGrid& parts, const DeepOpacityMap&
           const glm::vec3 place = map.inSpace(xOf(lane), y, 0.f);
           for (int axis = 0; axis < 3; ++axis) from[static_cast<std::size_t>(axis * lanes + lane)] = place[axis];
         }
-        passed.steps = walk.walk(grid, map.along(), from.data(), passed.begin.data(), passed.last.data(),
-                                 passed.ends.data(), passed.parts.data());
+        walk.walk(grid, map.along(), from.data(), passed.room());
         for (int lane = 0; lane < lanes && column + lane <= last.x; ++lane) {
           const int x = xOf(lane);
           const bool in_map = x >= 0 && y >= 0 && x < map.size().x && y < map.size().y;

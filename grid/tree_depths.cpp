@@ -1,5 +1,7 @@
 #include "grid/tree_depths.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -116,27 +118,18 @@ Lattice throughCells(const DeepOpacityMap& map, float side, glm::vec2 corner, gl
 
 TreeDepths::TreeDepths(const CellGrid& grid, const DeepOpacityMap& map, std::span<const float> seen_from)
     : axes_(map.axes()) {
-  const std::vector<Means> means = walkLines(grid, map);
-  for (const float seen_side : seen_from) {
-    Picture& picture = pictures_.emplace_back();
-    within_.emplace_back();
-    if (seen_side == 0.f) continue;
-    within_.back() = overCells(means, seen_side);
-    const float side = std::max(seen_side, kFinestPicture * map.pixelSize());
-    const float pixel = side / kPixelsPerCell;  // [m]
-    const glm::vec2 covered = map.pixelSize() * glm::vec2(map.size());
-    // Half a cell's diagonal is .87 of its side; one more pixel is empty.
-    const glm::ivec2 size = glm::ivec2(glm::ceil((covered + 2.f * side) / pixel)) + 2;
-    picture.per_pixel = 1.f / pixel;
-    picture.corner = map.corner() + 0.5f * (covered - pixel * glm::vec2(size - 1));
-    picture.last = glm::vec2(size - 1);
-    picture.width = static_cast<std::size_t>(size.x);
-    picture.thickness.reserve(picture.width * static_cast<std::size_t>(size.y));
-    Lattice lattice = throughCells(map, side, picture.corner, kFiner * (size - 1) + 1);
-    for (int y = 0; y < size.y; ++y)
-      for (int x = 0; x < size.x; ++x)
-        picture.thickness.push_back(fixedDepth(depthSteps(lattice(kFiner * x, kFiner * y))));
-  }
+  pictures_.resize(seen_from.size());
+  within_.resize(seen_from.size());
+  const auto inside = [&] {
+    const std::vector<Means> means = walkLines(grid, map);
+    for (std::size_t i = 0; i < seen_from.size(); ++i)
+      if (seen_from[i] > 0.f) within_[i] = overCells(means, seen_from[i]);
+  };
+  const auto outside = [&] {
+    for (std::size_t i = 0; i < seen_from.size(); ++i)
+      if (seen_from[i] > 0.f) pictures_[i] = pictureOf(map, seen_from[i]);
+  };
+  tbb::parallel_invoke(inside, outside);
   cells_.reserve(grid.active.size());
   Bounds box;
   for (const std::uint32_t cell : grid.active) {
@@ -147,6 +140,24 @@ TreeDepths::TreeDepths(const CellGrid& grid, const DeepOpacityMap& map, std::spa
   cells_high_ = glm::vec2(box.high);
 }
 
+TreeDepths::Picture TreeDepths::pictureOf(const DeepOpacityMap& map, float seen_side) {
+  const float side = std::max(seen_side, kFinestPicture * map.pixelSize());
+  const float pixel = side / kPixelsPerCell;  // [m]
+  const glm::vec2 covered = map.pixelSize() * glm::vec2(map.size());
+  // Half a cell's diagonal is .87 of its side; one more pixel is empty.
+  const glm::ivec2 size = glm::ivec2(glm::ceil((covered + 2.f * side) / pixel)) + 2;
+  Picture picture{.corner = map.corner() + 0.5f * (covered - pixel * glm::vec2(size - 1)),
+                  .per_pixel = 1.f / pixel,
+                  .last = glm::vec2(size - 1),
+                  .width = static_cast<std::size_t>(size.x)};
+  picture.thickness.reserve(picture.width * static_cast<std::size_t>(size.y));
+  Lattice lattice = throughCells(map, side, picture.corner, kFiner * (size - 1) + 1);
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x)
+      picture.thickness.push_back(fixedDepth(depthSteps(lattice(kFiner * x, kFiner * y))));
+  return picture;
+}
+
 // Means over parts of cells.
 std::vector<TreeDepths::Means> TreeDepths::walkLines(const CellGrid& grid, const DeepOpacityMap& map) {
   parts_.cell_size = grid.cell_size / kParts;
@@ -154,20 +165,19 @@ std::vector<TreeDepths::Means> TreeDepths::walkLines(const CellGrid& grid, const
   parts_.size = kParts * (grid.size + 2 * kMargin);
   const int every = std::max(1, static_cast<int>(grid.cell_size / (kLinesPerCell * map.pixelSize())));
   const std::vector<detail::PartSums> sums = detail::sumsOverParts(parts_, map, every);
-  const auto mean = [&](const detail::PartSums& of, const glm::vec3& centre) {
+  const auto mean = [&](const detail::PartSums& of, const CellGrid& of_grid, std::size_t number) {
     if (of.length > 0.f) return Means{std::max(of.beyond, 0.f) / of.length, of.before / of.length};
     // The map's lines are too coarse for it: the nearest to its centre.
-    const DeepOpacityMap::Counts counts = map.counts(centre);
+    const DeepOpacityMap::Counts counts = map.counts(of_grid.centre(number));
     return Means{static_cast<float>(counts.beyond), static_cast<float>(counts.before)};
   };
   const bool with_wood = !map.lastWoodDepth().empty();
   for (std::size_t cell = 0; cell < grid.count(); ++cell) {
     detail::PartSums of_cell;
-    for (int i = 0; i < kParts * kParts * kParts; ++i) {
-      const glm::ivec3 part(i % kParts, i / kParts % kParts, i / (kParts * kParts));
-      of_cell += sums[parts_.number(kParts * (grid.cell(cell) + kMargin) + part)];
-    }
-    const Means of = mean(of_cell, grid.centre(cell));
+    const glm::ivec3 first_part = kParts * (grid.cell(cell) + kMargin);
+    for (int i = 0; i < kParts * kParts * kParts; ++i)
+      of_cell += sums[parts_.number(first_part + glm::ivec3(i % kParts, i / kParts % kParts, i / (kParts * kParts)))];
+    const Means of = mean(of_cell, grid, cell);
     beyond_.push_back(fixedDepth(depthSteps(of.beyond)));
     before_.push_back(fixedDepth(depthSteps(of.before)));
     if (!with_wood) continue;
@@ -179,7 +189,7 @@ std::vector<TreeDepths::Means> TreeDepths::walkLines(const CellGrid& grid, const
   }
   std::vector<Means> means;
   means.reserve(sums.size());
-  for (std::size_t part = 0; part < sums.size(); ++part) means.push_back(mean(sums[part], parts_.centre(part)));
+  for (std::size_t part = 0; part < sums.size(); ++part) means.push_back(mean(sums[part], parts_, part));
   return means;
 }
 

@@ -16,18 +16,22 @@ struct PartGrid {
   std::size_t mostSteps() const { return static_cast<std::size_t>(size.x + size.y + size.z) + 4; }
 };
 
+// What lines pass, side by side in lanes: for each line a number, or step by step rows of lanes with room for
+// mostSteps().
+struct PassedParts {
+  float* begin;         // where each enters the box [m]
+  std::int32_t* count;  // of the parts it passes; 0: none
+  std::int32_t* part;
+  float *end, *length;  // where each leaves the part, and its way in it [m]
+};
+
 struct PartWalk {
-  std::size_t lanes;  // lines that are walked along side by side
-  // Writes for each line where it enters and leaves the box, the former not below the latter where it misses it; and
-  // step by step, a row of lanes for each, the part it is in and where it leaves that. Steps are as many as the longest
-  // line needs and mostSteps() at most. A line that grazes the box's rim may by rounding go on beside it for a
-  // millionth of a part: by one part along each axis.
+  std::size_t lanes;
+  // A line that grazes the box's rim may by rounding go on beside it for a millionth of a part: by one part along each
+  // axis.
   //   from   where depth is 0 [m]: x of all lanes, then y, then z
   //   along  unit vector
-  //   begin, last, ends  depths [m]
-  // Returns the number of steps.
-  std::size_t (*walk)(const PartGrid& grid, const glm::vec3& along, const float* from, float* begin, float* last,
-                      float* ends, std::int32_t* parts);
+  void (*walk)(const PartGrid& grid, const glm::vec3& along, const float* from, const PassedParts& passed);
 };
 
 PartWalk partWalk();

@@ -31,8 +31,7 @@ template <typename Vector, typename Number>
   return found;
 }
 
-std::size_t walk(const detail::PartGrid& grid, const glm::vec3& along, const float* from, float* begins, float* lasts,
-                 float* ends, std::int32_t* parts) {
+void walk(const detail::PartGrid& grid, const glm::vec3& along, const float* from, const detail::PassedParts& passed) {
   const float low[3] = {grid.low.x, grid.low.y, grid.low.z}, high[3] = {grid.high.x, grid.high.y, grid.high.z};
   const float move[3] = {along.x, along.y, along.z};
   const std::int32_t size[3] = {grid.size.x, grid.size.y, grid.size.z};
@@ -50,42 +49,47 @@ std::size_t walk(const detail::PartGrid& grid, const glm::vec3& along, const flo
       last = least(last, most(a, b));
     }
   }
-  store(begin, begins);
-  store(last, lasts);
-  if (!any(begin < last)) return 0;
+  Integers count{};
+  store(begin, passed.begin);
+  store(count, passed.count);
+  if (!any(begin < last)) return;
 
-  Floats next[3], step[3];
+  Floats next[3], way[3];
   Integers part{}, turn[3];
   std::int32_t stride = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const bool level = per_metre[axis][0] == 0.f, up = move[axis] > 0.f;
-    const Floats at = (start[axis] + begin * move[axis] - low[axis]) * (1.f / grid.side);
+    const Floats entry = (start[axis] + begin * move[axis] - low[axis]) * (1.f / grid.side);
     const Integers cell =
-        __builtin_convertvector(least(most(at, Floats{}), Floats{} + static_cast<float>(size[axis] - 1)), Integers);
+        __builtin_convertvector(least(most(entry, Floats{}), Floats{} + static_cast<float>(size[axis] - 1)), Integers);
     const Floats plane = low[axis] + grid.side * (__builtin_convertvector(cell, Floats) + (up ? 1.f : 0.f));
     next[axis] = level ? Floats{} + kInfinity : (plane - start[axis]) * per_metre[axis];
-    step[axis] = Floats{} + grid.side * (up ? per_metre[axis][0] : -per_metre[axis][0]);
+    way[axis] = Floats{} + grid.side * (up ? per_metre[axis][0] : -per_metre[axis][0]);
     turn[axis] = Integers{} + (up ? stride : -stride);
     part += cell * stride;
     stride *= size[axis];
   }
   const std::size_t most_steps = static_cast<std::size_t>(size[0] + size[1] + size[2]) + 4;
-  std::size_t steps = 0;
-  while (steps < most_steps) {
-    const Floats nearest = least(next[0], least(next[1], next[2]));
-    store(nearest, ends + steps * kLanes);
-    store(part, parts + steps * kLanes);
-    ++steps;
-    if (!any(nearest < last)) break;
+  Floats at = begin;
+  Integers going = begin < last;  // -1 where true
+  for (std::size_t step = 0; step < most_steps; ++step) {
+    const Floats nearest = least(next[0], least(next[1], next[2])), end = least(most(nearest, at), last);
+    store(end - at, passed.length + step * kLanes);
+    store(end, passed.end + step * kLanes);
+    store(part, passed.part + step * kLanes);
+    count -= going;
+    going &= nearest < last;
+    if (!any(going)) break;
+    at = end;
     const Integers across_x = next[0] <= nearest;
     const Integers across_y = (next[1] <= nearest) & ~across_x;
     const Integers across_z = ~across_x & ~across_y;
-    next[0] = across_x ? next[0] + step[0] : next[0];
-    next[1] = across_y ? next[1] + step[1] : next[1];
-    next[2] = across_z ? next[2] + step[2] : next[2];
+    next[0] = across_x ? next[0] + way[0] : next[0];
+    next[1] = across_y ? next[1] + way[1] : next[1];
+    next[2] = across_z ? next[2] + way[2] : next[2];
     part += (across_x & turn[0]) + (across_y & turn[1]) + (across_z & turn[2]);
   }
-  return steps;
+  store(count, passed.count);
 }
 
 }  // namespace
