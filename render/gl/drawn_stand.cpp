@@ -34,6 +34,7 @@ DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry) {
         stand.periods_around = glm::max(stand.periods_around, periodsAround(scene.stand, leafBounds(*kind.mesh)));
   stand.ground_albedo = scene.ground_albedo;
   stand.sky = geometry.sky();
+  stand.ground_sky = geometry.groundSky();
   return stand;
 }
 

@@ -59,6 +59,7 @@ struct DrawnStand {
   glm::ivec2 periods_around{0};     // in which copies may stand in the light
   glm::vec3 ground_albedo{0.f};     // per band [1]; 0 in all: there is none
   std::shared_ptr<const SkyMap> sky;
+  GroundSky ground_sky;  // what the ground receives of it
 };
 
 // `geometry` is up to date for the scene. G and sky light are told of the trees for which it has them.
