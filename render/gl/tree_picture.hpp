@@ -1,13 +1,13 @@
 #pragma once
 
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "core/image.hpp"
 #include "core/progress.hpp"
 #include "grid/cell_grid.hpp"
 #include "grid/deep_opacity_map.hpp"
+#include "render/gl/opacity_maps.hpp"
 #include "render/model.hpp"
 #include "render/scene.hpp"
 
@@ -18,11 +18,6 @@ struct ShadingData {
   const DeepOpacityMap* sun = nullptr;               // along the scene's sun
   const CellGrid* cells = nullptr;                   // of the prototype; for sppg alone
   std::vector<std::span<const float>> compensation;  // G per cell, for each tree of the stand; for sppg alone
-};
-
-// The sun's opacity map is more than this OpenGL lets a shader read.
-struct MapTooLarge : std::runtime_error {
-  using std::runtime_error::runtime_error;
 };
 
 // (R3) The scene as the GPU shades it: leaves, wood and a disc of ground by the model, seen by the scene's camera

@@ -1,0 +1,144 @@
+#include "render/gl/opacity_maps.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace sunfleck::gl {
+namespace {
+
+constexpr std::uint32_t kWood = ~0u;            // the leaf of a wood triangle
+constexpr std::uint32_t kNoWood = 0xff800000u;  // infinity, as the shaders order depths
+constexpr std::size_t kGroup = 64;              // invocations, as the shaders say
+constexpr std::size_t kRun = 64;                // pixels whose counts one invocation adds up
+constexpr std::size_t kMostGroups = 65535;      // along one axis, in any OpenGL
+enum Binding : unsigned { kPositions, kTriangles, kFirst, kCrossings, kWoodDepth, kRuns };
+
+// What the shaders read: the C++ side of opacity_scan.glsl.
+struct MapData {
+  glm::dvec2 corner;
+  double pixels_per_metre;
+  double unused = 0.;
+  glm::vec4 right, up, along;
+  glm::uvec4 size;
+};
+static_assert(sizeof(MapData) == 32 + 4 * 16);
+
+void requireRoom(double bytes, const std::string& what) {
+  if (bytes <= static_cast<double>(Buffer::largestStorage())) return;
+  std::ostringstream why;
+  why.precision(4);
+  why << what << " takes " << 1e-6 * bytes << " MB in one piece: must be at most "
+      << 1e-6 * static_cast<double>(Buffer::largestStorage()) << " MB for this OpenGL";
+  throw MapTooLarge(why.str());
+}
+
+std::vector<glm::uvec4> trianglesOf(const TreeMesh& mesh) {
+  std::vector<glm::uvec4> triangles;
+  triangles.reserve(mesh.leaf_triangles.size() + mesh.wood_triangles.size());
+  for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i)
+    triangles.emplace_back(mesh.leaf_triangles[i], mesh.leaf_of_triangle[i]);
+  for (const glm::uvec3& triangle : mesh.wood_triangles) triangles.emplace_back(triangle, kWood);
+  return triangles;
+}
+
+// Runs the program in use so often, and lets what follows see what it wrote.
+void dispatch(std::size_t invocations) {
+  const std::size_t groups = (invocations + kGroup - 1) / kGroup, side = std::min(groups, kMostGroups);
+  if (groups == 0) return;
+  glDispatchCompute(static_cast<GLuint>(side), static_cast<GLuint>((groups + side - 1) / side), 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+}  // namespace
+
+MappedTree::MappedTree(const TreeMesh& mesh) : mesh_(&mesh), positions_(mesh.vertices), triangles_(trianglesOf(mesh)) {}
+
+OpacityMapMaker::OpacityMapMaker(const Context& context)
+    : context_(&context),
+      count_({shaderOf(Stage::compute, "render/gl/opacity_count.comp")}),
+      sum_({shaderOf(Stage::compute, "render/gl/opacity_sum.comp")}),
+      fill_({shaderOf(Stage::compute, "render/gl/opacity_fill.comp")}),
+      sort_({shaderOf(Stage::compute, "render/gl/opacity_sort.comp")}) {}
+
+OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int resolution, bool with_wood) const {
+  const OpacityMapFrame frame = opacityMapFrame(*tree.mesh_, along, resolution);
+  const std::size_t pixels = static_cast<std::size_t>(frame.size.x) * static_cast<std::size_t>(frame.size.y);
+  const std::size_t leaf_triangles = tree.mesh_->leaf_triangles.size();
+  const std::size_t wood_triangles = with_wood ? tree.mesh_->wood_triangles.size() : 0;
+  for (const Buffer* buffer : {&tree.positions_, &tree.triangles_})
+    requireRoom(static_cast<double>(buffer->bytes()), "the tree");
+  requireRoom(4. * static_cast<double>(pixels + 1), "the light's opacity map");
+  const MapData data{.corner = frame.corner,
+                     .pixels_per_metre = 1. / double{frame.pixel_size},
+                     .right = glm::vec4(frame.axes.right, 0.f),
+                     .up = glm::vec4(frame.axes.up, 0.f),
+                     .along = glm::vec4(frame.axes.along, 0.f),
+                     .size = {frame.size, leaf_triangles, wood_triangles}};
+  const Buffer uniforms(std::span<const MapData>(&data, 1));
+  uniforms.bindUniform(0);
+  tree.positions_.bindStorage(kPositions);
+  tree.triangles_.bindStorage(kTriangles);
+  Buffer first = Buffer::filled(pixels + 1, 0u);
+  first.bindStorage(kFirst);
+  count_.use();
+  dispatch(leaf_triangles);
+
+  std::vector<std::uint32_t> runs((pixels + kRun - 1) / kRun);
+  const auto sum = [&](const Buffer& sums, bool known) {
+    sums.bindStorage(kRuns);
+    sum_.use();
+    glUniform1ui(0, static_cast<GLuint>(pixels));
+    glUniform1i(1, known);
+    dispatch(runs.size());
+  };
+  const Buffer found = Buffer::filled(runs.size(), 0u);
+  sum(found, false);
+  runs = found.read<std::uint32_t>();
+  std::uint64_t crossings_found = 0;
+  for (std::uint32_t& run : runs) {
+    const std::uint32_t of_run = run;
+    run = static_cast<std::uint32_t>(crossings_found);
+    crossings_found += of_run;
+  }
+  requireRoom(static_cast<double>(sizeof(Crossing)) * static_cast<double>(crossings_found), "the light's opacity map");
+  sum(Buffer(runs), true);
+
+  Buffer crossings = Buffer::filled(2 * crossings_found, 0u);
+  Buffer wood_depth = Buffer::filled(with_wood ? pixels : 0, kNoWood);
+  crossings.bindStorage(kCrossings);
+  wood_depth.bindStorage(kWoodDepth);
+  fill_.use();
+  dispatch(leaf_triangles + wood_triangles);
+  sort_.use();
+  glUniform1ui(0, static_cast<GLuint>(pixels));
+  glUniform1i(1, with_wood);
+  dispatch(pixels);
+  context_->requireNoError("making an opacity map");
+  return {.frame = frame,
+          .first = std::move(first),
+          .crossings = std::move(crossings),
+          .wood_depth = std::move(wood_depth)};
+}
+
+DeepOpacityMap OpacityMap::read() const {
+  const std::size_t pixels = first.bytes() / sizeof(std::uint32_t) - 1, count = crossings.bytes() / sizeof(Crossing);
+  DeepOpacityMap::Arrays arrays{.first = std::make_unique_for_overwrite<std::uint32_t[]>(pixels + 1),
+                                .crossings = std::make_unique_for_overwrite<Crossing[]>(count),
+                                .wood_depth = nullptr};
+  first.read(std::span(arrays.first.get(), pixels + 1));
+  crossings.read(std::span(arrays.crossings.get(), count));
+  if (wood_depth.bytes() > 0) {
+    arrays.wood_depth = std::make_unique_for_overwrite<float[]>(pixels);
+    wood_depth.read(std::span(arrays.wood_depth.get(), pixels));
+  }
+  return {frame, std::move(arrays)};
+}
+
+}  // namespace sunfleck::gl
