@@ -1,5 +1,6 @@
 #include "apps/pictures.hpp"
 
+#include "core/require.hpp"
 #include "render/gl/tree_picture.hpp"
 
 namespace sunfleck::apps {
@@ -16,6 +17,7 @@ void showGround(Scene& scene) {
 
 PixelRays pixelRays(const Scene& scene) {
   const Camera camera = cameraOf(scene);
+  require(!camera.perspective(), "camera field of view [rad]", camera.field_of_view, "0: Monte Carlo is orthographic");
   const Axes view = viewAxes(camera);
   const Bounds box = bounds(scene);
   // Far enough behind the target to see all in front, and the ground below, without losing digits.

@@ -92,7 +92,7 @@ Scene readScene(const SceneOptions& options, Media media) {
 }
 
 void addCameraOptions(CLI::App& command, CameraOptions& options, const std::string& target_name) {
-  const std::string group = "Camera (orthographic; shows the whole stand unless told otherwise)";
+  const std::string group = "Camera (shows the whole stand unless told otherwise)";
   command.add_option("--elevation", options.elevation_deg, "Height of the camera above the horizon, in degrees")
       ->check(numberIn(-90., 90., "in [-90, 90] degrees"))
       ->group(group);
@@ -106,6 +106,15 @@ void addCameraOptions(CLI::App& command, CameraOptions& options, const std::stri
   command.add_option("--half-width", options.half_width, "Half of the picture's width in the scene, in metres")
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6] m"))
       ->group(group);
+  command
+      .add_option("--field-of-view", options.field_of_view_deg,
+                  "Of the picture's width, in degrees; 0: orthographic (default). In perspective, --half-width is that "
+                  "at the point in the middle")
+      ->check([](const std::string& text) {
+        const bool zero = numberIn(0., 0., "0")(text).empty();
+        return zero ? std::string() : numberIn(0.1, 150., "0 or in [0.1, 150] degrees")(text);
+      })
+      ->group(group);
   command.add_option("--size", options.size, "Width and height of the picture, in pixels")
       ->expected(2)
       ->transform(wholeNumberIn(1., 8192., "a whole number, 1 to 8192"))
@@ -117,6 +126,7 @@ void apply(const CameraOptions& options, Scene& scene) {
   Camera camera = scene.camera.value_or(kOverview);
   if (options.elevation_deg) camera.elevation = glm::radians(*options.elevation_deg);
   if (options.azimuth_deg) camera.azimuth = glm::radians(*options.azimuth_deg);
+  if (options.field_of_view_deg) camera.field_of_view = glm::radians(*options.field_of_view_deg);
   if (options.size) {
     camera.width = (*options.size)[0];
     camera.height = (*options.size)[1];

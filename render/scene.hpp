@@ -13,23 +13,12 @@
 #include "core/leaf_optics.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
+#include "render/camera.hpp"
 #include "render/scene_medium.hpp"
 #include "render/scene_sky.hpp"
 #include "scattering/rpv_ground.hpp"
 
 namespace sunfleck {
-
-// An orthographic camera that looks at a point.
-struct Camera {
-  glm::vec3 target{0.f};          // point in the middle of the picture [m]
-  float elevation = 0.f;          // of the camera as seen from the target [rad], -pi/2 .. pi/2
-  float azimuth = 0.f;            // of the camera as seen from the target, from +x towards +y [rad]
-  float half_width = 1.f;         // half of the picture's width in the scene [m], > 0
-  int width = 512, height = 512;  // [pixel], > 0
-};
-
-// Where a scene is looked at from unless it says so: somewhat from above, 10 degrees, and aside, 20 degrees.
-inline constexpr Camera kOverview{.elevation = 0.1745f, .azimuth = 0.3491f};
 
 // A kind of tree: its prototype and its optics.
 struct TreeKind {
@@ -76,8 +65,5 @@ Camera showingAll(const Scene& scene, Camera camera);
 // Trees of the stand that may be seen in the camera's picture; all of them in a periodic stand, which is drawn with
 // copies.
 std::vector<std::size_t> treesInPicture(const Scene& scene, const Camera& camera);
-// Right and up of the picture, and the direction of sight. Seen as people see, right x up points at the eye, so that
-// these axes are left-handed: right x up = -along.
-Axes viewAxes(const Camera& camera);
 
 }  // namespace sunfleck

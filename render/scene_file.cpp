@@ -160,10 +160,19 @@ void readStand(Scene& scene, detail::SceneTable stand) {
           scene.origin, scene.kinds[i].name, scene.kinds.size()));
 }
 
+// Zero, which means something of its own, or an angle in a range; in radians.
+float degreesOrZero(detail::SceneTable& table, const std::string& where, const char* key, double low, double high) {
+  const std::string rule = fmt::format("0 or in [{}, {}]", low, high);
+  const double value = table.number(key, 0., 0., high, rule);
+  require(value == 0. || value >= low, where + "." + key, value, rule);
+  return glm::radians(static_cast<float>(value));
+}
+
 void readCamera(Scene& scene, detail::SceneTable camera) {
   Camera read = kOverview;
   if (camera.has("elevation_deg")) read.elevation = degrees(camera, "elevation_deg", -90., 90., "in [-90, 90]");
   if (camera.has("azimuth_deg")) read.azimuth = degrees(camera, "azimuth_deg", -360., 360., "in [-360, 360]");
+  read.field_of_view = degreesOrZero(camera, scene.origin + ": camera", "field_of_view_deg", 0.1, 150.);
   read.width = camera.count("width", read.width, 8192);
   read.height = camera.count("height", read.height, 8192);
   read = showingAll(scene, read);
@@ -178,14 +187,11 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
 }
 
 void readSun(Scene& scene, detail::SceneTable sun) {
-  constexpr double kLeastDiameter = 0.25, kMostDiameter = 60.;  // as Monte Carlo takes it
   scene.sun_zenith = degrees(sun, "zenith_deg", 0., 89.9, "in [0, 89.9]");
   scene.sun_azimuth = degrees(sun, "azimuth_deg", -360., 360., "in [-360, 360]");
   scene.sun_irradiance = sun.perBand("irradiance", scene.sun_irradiance, 10.);
-  const double diameter = sun.number("diameter_deg", 0., 0., kMostDiameter, "0 or in [0.25, 60]");
-  require(diameter == 0. || diameter >= kLeastDiameter, scene.origin + ": sun.diameter_deg", diameter,
-          "0 or in [0.25, 60]");
-  scene.sun_diameter = glm::radians(static_cast<float>(diameter));
+  scene.sun_diameter =
+      degreesOrZero(sun, scene.origin + ": sun", "diameter_deg", 0.25, 60.);  // as Monte Carlo takes it
   sun.done();
 }
 
@@ -457,11 +463,13 @@ kind = "none"                 # none | uniform | overcast | preetham | image
                               # zenith on top. Its lower half is not used; a sun in it adds to [sun]
 # rotation_deg = 0.0          # image: azimuth of its middle column; to the right of it the azimuth falls
 
-[camera]                      # orthographic; shows the whole stand if left out
+[camera]                      # shows the whole stand if left out
 # target = [0.0, 0.0, 4.0]    # point in the middle of the picture
 # elevation_deg = 10.0        # -90 to 90
 # azimuth_deg = 20.0          # where the camera stands, from +x towards +y
-# half_width = 5.0            # half of the picture's width
+# half_width = 5.0            # half of the picture's width, in perspective at the target: with the field of view it
+                              # says how far away the eye is
+# field_of_view_deg = 0.0     # of the picture's width, 0.1 to 150; 0: orthographic
 # width = 512                 # pixels, 1 to 8192
 # height = 512
 )";

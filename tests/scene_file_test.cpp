@@ -72,6 +72,7 @@ target = [1.0, 2.0, 3.0]
 elevation_deg = 30
 azimuth_deg = -45
 half_width = 2.5
+field_of_view_deg = 60
 width = 64
 height = 32
 )"));
@@ -93,6 +94,7 @@ height = 32
   EXPECT_EQ(scene.camera->target, glm::vec3(1.f, 2.f, 3.f));
   EXPECT_NEAR(scene.camera->elevation, 0.5235988f, 1e-6f);
   EXPECT_EQ(scene.camera->half_width, 2.5f);
+  EXPECT_NEAR(scene.camera->field_of_view, 1.0471976f, 1e-6f);
   EXPECT_EQ(scene.camera->height, 32);
 }
 
@@ -162,6 +164,8 @@ TEST_F(SceneFile, NamesWhatIsWrong) {
   write("tree.obj", kSquare);
   EXPECT_EQ(refusal("[sun]\nzenith_deg = 95\n"), "s.toml:2: sun.zenith_deg = 95: must be in [0, 89.9]");
   EXPECT_EQ(refusal("[sun]\nzenith_deg = nan\n"), "s.toml:2: sun.zenith_deg = nan: must be in [0, 89.9]");
+  EXPECT_EQ(refusal("[camera]\nfield_of_view_deg = 0.05\n"),
+            "s.toml: camera.field_of_view_deg = 0.05: must be 0 or in [0.1, 150]");
   EXPECT_EQ(refusal("[sun]\nzenit = 1\n"), "s.toml:2: unknown key \"zenit\" in [sun]; see: sunfleck --help scene");
   EXPECT_EQ(refusal("\n[moon]\n"), "s.toml:2: unknown key \"moon\"; see: sunfleck --help scene");
   EXPECT_EQ(refusal("sun = 3\n"), "s.toml:1: sun = 3: must be a table: [sun]");

@@ -23,6 +23,8 @@ void requireDrawable(const Scene& scene, const Camera& camera) {
     require(side > 0 && side <= kLongestSide, "picture size [pixel]", side, "1 .. " + std::to_string(kLongestSide));
   require(std::isfinite(camera.half_width) && camera.half_width > 0.f, "camera half width [m]", camera.half_width,
           "a finite number above 0");
+  require(!camera.perspective(), "camera field of view [rad]", camera.field_of_view,
+          "0: models' pictures are orthographic");
   for (const Placement& tree : scene.stand.trees)
     require(tree.rotation == 0.f, "tree rotation [rad]", tree.rotation,
             "0: pictures share one opacity map among all trees, which a rotated tree does not fit");
