@@ -1,0 +1,116 @@
+#include "render/reference/visible_surfaces.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <stdexcept>
+
+#include "core/require.hpp"
+#include "render/reference/detail/scene_geometry.hpp"
+
+namespace sunfleck {
+using namespace detail;
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr unsigned kWood = 1;                      // Embree's geometry number
+constexpr int kSide = 4, kPacket = kSide * kSide;  // pixels looked at together
+constexpr int kTile = 32;                          // pixels along a task's side
+constexpr int kRowsAtOnce = 256;                   // between two words about progress
+
+class Looking {
+ public:
+  Looking(const RayScene& scene, const SightLines& lines, const std::optional<VisibleDisc>& disc)
+      : scene_(scene.geometry()),
+        rays_(lines.pixels),
+        eye_(lines.eye),
+        corner_(rays_.corner + lines.within.x * rays_.right_step + lines.within.y * rays_.down_step),
+        disc_(disc) {
+    for (glm::vec3* place : {&corner_, eye_ ? &*eye_ : nullptr, disc_ ? &disc_->centre : nullptr})
+      if (place) *place -= scene_.origin;
+    reach_ = 0.5f * glm::length(scene_.box.size()) + 8.f * scene_.lift;
+    if (disc_) reach_ = std::max(reach_, disc_->radius + glm::length(disc_->centre - scene_.box.centre()));
+  }
+
+  // At the pixels from (left, top) on that are left of `right` and above `bottom`, at most kSide each way.
+  void look(int left, int top, int right, int bottom, std::vector<glm::uvec2>& seen) const {
+    alignas(64) std::array<int, kPacket> valid{};
+    RTCRayHit16 packet;
+    for (int i = 0; i < kPacket; ++i) {
+      const int x = left + i % kSide, y = top + i / kSide;
+      const auto ray = static_cast<std::size_t>(i);
+      valid[ray] = x < right && y < bottom ? -1 : 0;
+      const glm::vec3 place =
+          corner_ + static_cast<float>(x) * rays_.right_step + static_cast<float>(y) * rays_.down_step;
+      const Direction sight = eye_ ? glm::normalize(place - *eye_) : rays_.sight;
+      const glm::vec3 from = startOf(place, sight);
+      set(packet.ray, ray, from, sight, toDisc(from, sight));
+      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    closestHits(valid.data(), scene_.scenes.root(), packet);
+    for (int i = 0; i < kPacket; ++i)
+      if (valid[static_cast<std::size_t>(i)])
+        seen[static_cast<std::size_t>(top + i / kSide) * static_cast<std::size_t>(rays_.width) +
+             static_cast<std::size_t>(left + i % kSide)] = met(packet, i);
+  }
+
+ private:
+  // Right before all there is to be seen, where positions are exact, but not before the eye.
+  glm::vec3 startOf(const glm::vec3& place, const Direction& sight) const {
+    const glm::vec3& on_line = eye_ ? *eye_ : place;
+    const float distance = glm::dot(scene_.box.centre() - on_line, sight) - reach_;
+    return on_line + (eye_ ? std::max(0.f, distance) : distance) * sight;
+  }
+  float toDisc(const glm::vec3& from, const Direction& sight) const {
+    if (!disc_ || sight.z >= 0.f || from.z < disc_->centre.z) return kInfinity;
+    const float distance = (disc_->centre.z - from.z) / sight.z;
+    const glm::vec2 at = glm::vec2(from + distance * sight - disc_->centre);
+    return glm::length(at) < disc_->radius ? distance : kInfinity;
+  }
+  glm::uvec2 met(const RTCRayHit16& packet, int i) const {
+    if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
+      return {packet.ray.tfar[i] < kInfinity ? kDiscSeen : kNothingSeen, 0u};
+    const unsigned instance = packet.hit.instID[0][i] == RTC_INVALID_GEOMETRY_ID ? 0 : packet.hit.instID[0][i];
+    const Prototype& prototype = scene_.prototypes[scene_.copies[instance].kind];
+    const std::size_t leaf_triangles = packet.hit.geomID[i] == kWood ? prototype.leaf_of_triangle.size() : 0;
+    return {instance, packet.hit.primID[i] + static_cast<unsigned>(leaf_triangles)};
+  }
+
+  const RayScene::Geometry& scene_;
+  PixelRays rays_;
+  // About the scene's origin [m]:
+  std::optional<glm::vec3> eye_;
+  glm::vec3 corner_;  // on the first pixel's line
+  std::optional<VisibleDisc> disc_;
+  float reach_;  // from the middle of the box, of all there is to be seen
+};
+
+}  // namespace
+
+std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const SightLines& lines,
+                                        const std::optional<VisibleDisc>& disc, const Progress& progress) {
+  const PixelRays& rays = lines.pixels;
+  validate(rays);
+  if (scene.geometry().period) throw InvalidInput("visible surfaces: the stand must not be periodic");
+  std::vector<glm::uvec2> seen(static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height));
+  const Looking looking(scene, lines, disc);
+  const int across = (rays.width + kTile - 1) / kTile;
+  for (int rows = 0; rows < rays.height; rows += kRowsAtOnce) {
+    if (!goOn(progress, static_cast<double>(rows) / rays.height)) throw std::runtime_error("interrupted");
+    const int rows_end = std::min(rows + kRowsAtOnce, rays.height), down = (rows_end - rows + kTile - 1) / kTile;
+    tbb::parallel_for(0, across * down, [&](int tile) {
+      const int left = tile % across * kTile, top = rows + tile / across * kTile;
+      const int right = std::min(left + kTile, rays.width), bottom = std::min(top + kTile, rows_end);
+      for (int y = top; y < bottom; y += kSide)
+        for (int x = left; x < right; x += kSide) looking.look(x, y, right, bottom, seen);
+    });
+  }
+  return seen;
+}
+
+}  // namespace sunfleck

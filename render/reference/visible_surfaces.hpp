@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "render/reference/camera_trace.hpp"
+#include "render/reference/ray_scene.hpp"
+
+namespace sunfleck {
+
+// Lines of sight, one through each pixel of a picture.
+struct SightLines {
+  PixelRays pixels;
+  std::optional<glm::vec3> eye;  // in perspective: where the lines begin, whatever `pixels.sight` [m]
+  glm::vec2 within{0.5f};        // place in each pixel from its corner, in steps to the right and down; 0 .. 1
+};
+
+// A level disc that is seen from above.
+struct VisibleDisc {
+  glm::vec3 centre{0.f};  // [m]
+  float radius = 0.f;     // [m]
+};
+
+inline constexpr std::uint32_t kNothingSeen = 0xffffffffu, kDiscSeen = 0xfffffffeu;
+
+// (R32) What is seen along lines of sight: of pixel (x, y), at y * width + x, in .x the number of the tree in the
+// stand, kDiscSeen or kNothingSeen, and in .y the triangle of its kind, leaves first and wood after them; 0 where no
+// tree is seen. Works in parallel; the same for any number of threads. Throws InvalidInput for pixels out of their
+// ranges and for a periodic stand, whose copies have no numbers, and std::runtime_error("interrupted") when `progress`
+// ends it.
+std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const SightLines& lines,
+                                        const std::optional<VisibleDisc>& disc, const Progress& progress = {});
+
+}  // namespace sunfleck

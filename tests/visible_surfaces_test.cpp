@@ -1,0 +1,160 @@
+#include "render/reference/visible_surfaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/require.hpp"
+#include "tests/leaf_shapes.hpp"
+
+using namespace sunfleck;
+using namespace sunfleck::shapes;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Of a square picture about the origin, 6 m wide.
+SightLines linesAlong(const Direction& sight, int side) {
+  const Axes axes = axesAlong(sight);
+  const float pixel = 6.f / static_cast<float>(side);
+  return {.pixels = {.corner = -3.f * (axes.right + axes.up) - 50.f * sight,
+                     .right_step = pixel * axes.right,
+                     .down_step = pixel * axes.up,
+                     .sight = sight,
+                     .width = side,
+                     .height = side},
+          .eye = std::nullopt,
+          .within = {0.25f, 0.75f}};
+}
+
+struct Line {
+  glm::dvec3 from, along;
+};
+Line lineOf(const SightLines& lines, int x, int y) {
+  const glm::dvec3 place = glm::dvec3(lines.pixels.corner) +
+                           (x + double{lines.within.x}) * glm::dvec3(lines.pixels.right_step) +
+                           (y + double{lines.within.y}) * glm::dvec3(lines.pixels.down_step);
+  if (!lines.eye) return {place, lines.pixels.sight};
+  return {*lines.eye, glm::normalize(place - glm::dvec3(*lines.eye))};
+}
+
+// Distance at which a line meets a triangle, infinite where it does not (Moeller & Trumbore 1997).
+double distanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const Line& line) {
+  const glm::dvec3 p = glm::cross(line.along, c - a), q = glm::cross(line.from - a, b - a);
+  const double determinant = glm::dot(b - a, p);
+  const double u = glm::dot(line.from - a, p) / determinant, v = glm::dot(line.along, q) / determinant;
+  const double t = glm::dot(c - a, q) / determinant;
+  return u >= 0. && v >= 0. && u + v <= 1. && t > 0. ? t : kInfinity;
+}
+
+// What a line sees first, every triangle of every tree tried.
+glm::uvec2 firstOf(std::span<const TreeMesh* const> kinds, const Stand& stand, const VisibleDisc& disc,
+                   const Line& line) {
+  glm::uvec2 seen(kNothingSeen, 0u);
+  double nearest = kInfinity;
+  for (std::uint32_t i = 0; i < stand.trees.size(); ++i) {
+    const Placement& tree = stand.trees[i];
+    const TreeMesh& mesh = *kinds[tree.kind];
+    const double c = std::cos(double{tree.rotation}), s = std::sin(double{tree.rotation});
+    const auto placed = [&](std::uint32_t vertex) {
+      const glm::dvec3 v = mesh.vertices[vertex];
+      return glm::dvec3(c * v.x - s * v.y, s * v.x + c * v.y, v.z) + glm::dvec3(tree.position);
+    };
+    std::uint32_t number = 0;
+    for (const auto* triangles : {&mesh.leaf_triangles, &mesh.wood_triangles})
+      for (const glm::uvec3& t : *triangles) {
+        const double distance = distanceTo(placed(t.x), placed(t.y), placed(t.z), line);
+        if (distance < nearest) {
+          nearest = distance;
+          seen = {i, number};
+        }
+        ++number;
+      }
+  }
+  const double to_disc = (double{disc.centre.z} - line.from.z) / line.along.z;
+  const glm::dvec2 at = line.from + to_disc * line.along - glm::dvec3(disc.centre);
+  if (line.along.z < 0. && to_disc > 0. && to_disc < nearest && glm::length(at) < double{disc.radius})
+    return {kDiscSeen, 0u};
+  return seen;
+}
+
+// Leaves with a trunk.
+TreeMesh trunkAndLeaves(int leaves, std::uint64_t seed) {
+  TreeMesh mesh = leafBox(leaves, seed);
+  addPolygon(mesh, mesh.wood_triangles, rectangle({0, 0, -0.75f}, {0.2f, 0, 0}, {0, 0.1f, 0.5f}));
+  addPolygon(mesh, mesh.wood_triangles, rectangle({0, 0, -0.75f}, {0, 0.2f, 0}, {0, 0, 0.5f}));
+  finish(mesh, "tree");
+  return mesh;
+}
+
+}  // namespace
+
+// (R32) Check what is seen of trees of two kinds, turned and moved, and of a disc below, by parallel lines and from an
+// eye, beside and among the trees, against every triangle tried in double precision. A line that passes an edge within
+// rounding (1e-6 m of 1e-1 m, some 10 edges in sight of each line: 1e-4) could differ: 10 of 10,000 at the most.
+TEST(R32_VisibleSurfaces, AreTheFirstOfAllTriangles) {
+  const TreeMesh one = trunkAndLeaves(40, 4), other = trunkAndLeaves(30, 5);
+  const std::array kinds{&one, &other};
+  const Stand stand{.trees = {{.position = {0.5f, 0.f, 0.25f}, .rotation = 0.f, .kind = 1},
+                              {.position = {0.f, 1.5f, 0.f}, .rotation = 2.1f},
+                              {.position = {-1.f, -1.f, 0.2f}, .rotation = -1.f, .kind = 1}}};
+  const RayScene scene(kinds, stand, true);
+  const VisibleDisc disc{.centre = {0.f, 0.2f, -1.25f}, .radius = 2.f};
+  constexpr int kSide = 50;
+  SightLines from_eye = linesAlong(glm::normalize(glm::vec3(1.f, 2.f, -1.f)), kSide);
+  from_eye.pixels.corner += 50.f * from_eye.pixels.sight;
+  from_eye.eye = -4.f * from_eye.pixels.sight;
+  SightLines among = from_eye;
+  among.eye = -0.5f * from_eye.pixels.sight;
+  int different = 0;
+  std::array<int, 4> of{};  // lines that see leaves, wood, the disc, nothing
+  for (const SightLines& lines : {linesAlong({0.f, 0.f, -1.f}, kSide),
+                                  linesAlong(glm::normalize(glm::vec3(1.f, 2.f, -1.f)), kSide), from_eye, among}) {
+    const std::vector<glm::uvec2> seen = visibleSurfaces(scene, lines, disc);
+    ASSERT_EQ(seen.size(), std::size_t{kSide} * kSide);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const glm::uvec2 expected = firstOf(kinds, stand, disc, lineOf(lines, x, y));
+        different += seen[static_cast<std::size_t>(y * kSide + x)] != expected;
+        if (expected.x == kNothingSeen)
+          ++of[3];
+        else if (expected.x == kDiscSeen)
+          ++of[2];
+        else
+          ++of[expected.y >= kinds[stand.trees[expected.x].kind]->leaf_triangles.size()];
+      }
+  }
+  EXPECT_LE(different, 10);
+  for (const int lines : of) EXPECT_GT(lines, 20);
+}
+
+// Check that a tree alone, which Embree holds without an instance, is tree 0, also far from the world's origin and in a
+// picture whose sides are no multiples of what is looked at together; and that a disc that is not there is not seen.
+TEST(R32_VisibleSurfaces, OfOneTreeFarAway) {
+  TreeMesh leaf;
+  addPolygon(leaf, leaf.leaf_triangles, rectangle({0, 0, 0}, {1.25f, 0, 0}, {0, 3, 0}));
+  finish(leaf, "leaf");
+  const RayScene scene(std::array<const TreeMesh*, 1>{&leaf}, Stand{.trees = {{.position = {5000.f, 0.f, 0.f}}}}, true);
+  SightLines lines = linesAlong({0.f, 0.f, -1.f}, 6);
+  lines.pixels.corner.x += 5000.f;
+  lines.pixels.height = 5;
+  lines.within = {0.5f, 0.5f};
+  const std::vector<glm::uvec2> seen = visibleSurfaces(scene, lines, std::nullopt);
+  ASSERT_EQ(seen.size(), 30u);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const std::size_t column = i % 6;
+    EXPECT_EQ(seen[i].x, column >= 2 && column <= 3 ? 0u : kNothingSeen) << i;
+  }
+}
+
+TEST(R32_VisibleSurfaces, RefusesWhatHasNoNumbers) {
+  const TreeMesh tree = leafBox(5, 1);
+  const RayScene periodic(tree, Stand{.period = glm::vec2(3.f)}, true);
+  EXPECT_THROW(visibleSurfaces(periodic, linesAlong({0.f, 0.f, -1.f}, 4), std::nullopt), InvalidInput);
+  SightLines empty = linesAlong({0.f, 0.f, -1.f}, 4);
+  empty.pixels.width = 0;
+  EXPECT_THROW(visibleSurfaces(RayScene(tree, Stand{}, true), empty, std::nullopt), InvalidInput);
+}
