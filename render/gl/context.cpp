@@ -129,6 +129,10 @@ std::string Context::renderer() const {
   return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
 }
 
+void Context::finish() const {
+  glFinish();
+}
+
 void Context::requireNoError(const std::string& work) const {
   std::string error = std::exchange(state_->first_error, {});
   const GLenum code = glGetError();

@@ -6,5 +6,5 @@ layout(std430, binding = 2) buffer First { uint first[]; };
 void put(uint pixel, float depth, uint leaf) { atomicAdd(first[pixel + 1u], 1u); }
 
 void main() {
-  if (invocation() < map_size.z) scanTriangle(invocation());
+  if (triangleNumber() < map_size.z) scanTriangle();
 }

@@ -16,5 +16,5 @@ void put(uint pixel, float depth, uint leaf) {
 }
 
 void main() {
-  if (invocation() < map_size.z + map_size.w) scanTriangle(invocation());
+  if (triangleNumber() < map_size.z + map_size.w) scanTriangle();
 }

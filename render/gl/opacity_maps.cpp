@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -17,6 +19,9 @@ constexpr std::uint32_t kWood = ~0u;            // the leaf of a wood triangle
 constexpr std::uint32_t kNoWood = 0xff800000u;  // infinity, as the shaders order depths
 constexpr std::size_t kGroup = 64;              // invocations, as the shaders say
 constexpr std::size_t kRun = 64;                // pixels whose counts one invocation adds up
+constexpr std::size_t kMostSteps = 32'768;      // of all loops of an invocation; Mesa's llvmpipe ends them after 65,535
+constexpr std::uint32_t kMostOnLine = 1024;     // crossings, which the shader sorts within so many steps
+constexpr std::size_t kBusy = 65'536;           // invocations
 constexpr std::size_t kMostGroups = 65535;      // along one axis, in any OpenGL
 enum Binding : unsigned { kPositions, kTriangles, kFirst, kCrossings, kWoodDepth, kRuns };
 
@@ -48,17 +53,37 @@ std::vector<glm::uvec4> trianglesOf(const TreeMesh& mesh) {
   return triangles;
 }
 
-// Runs the program in use so often, and lets what follows see what it wrote.
-void dispatch(std::size_t invocations) {
+float longestEdge(const TreeMesh& mesh) {
+  float longest = 0.f;
+  for (const auto* triangles : {&mesh.leaf_triangles, &mesh.wood_triangles})
+    for (const glm::uvec3& t : *triangles)
+      for (int i = 0; i < 3; ++i)
+        longest = std::max(longest, glm::distance(mesh.vertices[t[i]], mesh.vertices[t[(i + 1) % 3]]));
+  return longest;
+}
+
+// Runs the program in use so often, for each `slices` times, and lets what follows see what it wrote.
+void dispatch(std::size_t invocations, std::size_t slices = 1) {
   const std::size_t groups = (invocations + kGroup - 1) / kGroup, side = std::min(groups, kMostGroups);
   if (groups == 0) return;
-  glDispatchCompute(static_cast<GLuint>(side), static_cast<GLuint>((groups + side - 1) / side), 1);
+  glDispatchCompute(static_cast<GLuint>(side), static_cast<GLuint>((groups + side - 1) / side),
+                    static_cast<GLuint>(slices));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+// Among how many a triangle is shared out: so that none has more than kMostSteps to do, and few triangles keep a large
+// graphics card busy.
+std::size_t slicesOf(std::size_t triangles, float longest_edge, const OpacityMapFrame& frame) {
+  const auto longest = static_cast<std::size_t>(std::min(longest_edge / frame.pixel_size, 1e6f)) + 2;  // [pixel]
+  const std::size_t columns = std::min(longest, static_cast<std::size_t>(frame.size.x));
+  const std::size_t rows = std::min(longest, static_cast<std::size_t>(frame.size.y));
+  return std::max((rows * (columns + 1)) / kMostSteps + 1, std::min(rows, kBusy / std::max<std::size_t>(triangles, 1)));
 }
 
 }  // namespace
 
-MappedTree::MappedTree(const TreeMesh& mesh) : mesh_(&mesh), positions_(mesh.vertices), triangles_(trianglesOf(mesh)) {}
+MappedTree::MappedTree(const TreeMesh& mesh)
+    : mesh_(&mesh), longest_edge_(longestEdge(mesh)), positions_(mesh.vertices), triangles_(trianglesOf(mesh)) {}
 
 OpacityMapMaker::OpacityMapMaker(const Context& context)
     : context_(&context),
@@ -88,21 +113,24 @@ OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int re
   Buffer first = Buffer::filled(pixels + 1, 0u);
   first.bindStorage(kFirst);
   count_.use();
-  dispatch(leaf_triangles);
+  dispatch(leaf_triangles, slicesOf(leaf_triangles, tree.longest_edge_, frame));
 
-  std::vector<std::uint32_t> runs((pixels + kRun - 1) / kRun);
+  const std::size_t run_count = (pixels + kRun - 1) / kRun;
   const auto sum = [&](const Buffer& sums, bool known) {
     sums.bindStorage(kRuns);
     sum_.use();
     glUniform1ui(0, static_cast<GLuint>(pixels));
     glUniform1i(1, known);
-    dispatch(runs.size());
+    dispatch(run_count);
   };
-  const Buffer found = Buffer::filled(runs.size(), 0u);
+  const Buffer found = Buffer::filled(1 + run_count, 0u);
   sum(found, false);
-  runs = found.read<std::uint32_t>();
+  std::vector<std::uint32_t> runs = found.read<std::uint32_t>();
+  if (runs.front() > kMostOnLine)
+    throw MapTooLarge("a line of the light's opacity map crosses " + std::to_string(runs.front()) +
+                      " leaves: must be at most " + std::to_string(kMostOnLine) + " for OpenGL");
   std::uint64_t crossings_found = 0;
-  for (std::uint32_t& run : runs) {
+  for (std::uint32_t& run : std::span(runs).subspan(1)) {
     const std::uint32_t of_run = run;
     run = static_cast<std::uint32_t>(crossings_found);
     crossings_found += of_run;
@@ -115,7 +143,8 @@ OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int re
   crossings.bindStorage(kCrossings);
   wood_depth.bindStorage(kWoodDepth);
   fill_.use();
-  dispatch(leaf_triangles + wood_triangles);
+  const std::size_t triangles = leaf_triangles + wood_triangles;
+  dispatch(triangles, slicesOf(triangles, tree.longest_edge_, frame));
   sort_.use();
   glUniform1ui(0, static_cast<GLuint>(pixels));
   glUniform1i(1, with_wood);

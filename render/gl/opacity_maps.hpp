@@ -35,6 +35,7 @@ class MappedTree {
  private:
   friend class OpacityMapMaker;
   const TreeMesh* mesh_;
+  float longest_edge_;  // of a triangle [m]
   Buffer positions_, triangles_;
 };
 

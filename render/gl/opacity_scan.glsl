@@ -16,8 +16,10 @@ layout(std430, binding = 1) readonly buffer Triangles { uvec4 triangles[]; };  /
 // What is done with each pixel: `depth` of the triangle at its centre [m].
 void put(uint pixel, float depth, uint leaf);
 
-// Which of many invocations this is: there may be more than fit side by side.
-uint invocation() { return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x; }
+// The triangle of this invocation: there may be more than fit side by side. Along z several share a triangle.
+uint triangleNumber() {
+  return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x;
+}
 
 // A float as a number that is greater the greater it is, and back.
 uint ordered(float value) {
@@ -54,8 +56,8 @@ void swapped(inout Corner a, inout Corner b) {
   b = c;
 }
 
-void scanTriangle(uint number) {
-  uvec4 triangle = triangles[number];
+void scanTriangle() {
+  uvec4 triangle = triangles[triangleNumber()];
   Corner low = cornerOf(triangle.x), middle = cornerOf(triangle.y), high = cornerOf(triangle.z);
   int least_column = int(min(low.column, min(middle.column, high.column)));
   int most_column = int(max(low.column, max(middle.column, high.column)));
@@ -65,7 +67,7 @@ void scanTriangle(uint number) {
   int bend = int(middle.row), end_row = min(int(map_size.y), int(high.row));
   if (least_column == most_column) return;  // between the centres of pixels
   Edge whole = edgeOf(low, high), lower = edgeOf(low, middle), upper = edgeOf(middle, high);
-  for (int row = int(low.row); row < end_row; ++row) {
+  for (int row = int(low.row) + int(gl_WorkGroupID.z); row < end_row; row += int(gl_NumWorkGroups.z)) {
     Edge part = lower;
     if (row >= bend) part = upper;
     double centre = double(row) + 1.0lf;
