@@ -26,6 +26,7 @@ struct FoliageEffort {
   int sample_resolution = 256;                   // pixels along the longer side of the maps along them
   int light_resolution = 512;                    // pixels along the longer side of a light's maps
   int cells = 16;                                // along the longest side of a tree
+  MapMaker light_map{};  // of a light's maps, called where they are asked for; none: by the processor
 };
 
 // A stand of trees, copies of some prototypes, and what the models need to know of it: the steps 1 to 5 of Shinya et

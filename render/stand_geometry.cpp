@@ -130,7 +130,8 @@ StandGeometry::StandGeometry(const GeometryEffort& effort)
     : foliage_(std::make_unique<FoliageStand>(FoliageEffort{.axes = spreadAxes(effort.sample_directions / 2),
                                                             .sample_resolution = effort.sample_resolution,
                                                             .light_resolution = effort.light_resolution,
-                                                            .cells = effort.cells})) {
+                                                            .cells = effort.cells,
+                                                            .light_map = effort.light_map})) {
   static_assert(FoliageStand::kMostLights == kMostSuns);
 }
 

@@ -22,6 +22,7 @@ struct GeometryEffort {
   int sample_directions = 22;   // of the G-factor, even: both directions of half as many axes
   int sample_resolution = 256;  // pixels along the longer side of each of their maps
   int cells = 16;               // along the longest side of a tree
+  MapMaker light_map{};         // of the light's maps, called by the thread that updates; none: by the processor
 };
 
 // The models hold numbers for every leaf of every tree; pictures for every cell.

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
@@ -23,7 +24,7 @@ constexpr std::size_t kMostSteps = 32'768;      // of all loops of an invocation
 constexpr std::uint32_t kMostOnLine = 1024;     // crossings, which the shader sorts within so many steps
 constexpr std::size_t kBusy = 65'536;           // invocations
 constexpr std::size_t kMostGroups = 65535;      // along one axis, in any OpenGL
-enum Binding : unsigned { kPositions, kTriangles, kFirst, kCrossings, kWoodDepth, kRuns };
+enum Binding : unsigned { kPositions, kTriangles, kFirst, kCrossings, kWoodDepth, kRuns, kLines = kRuns };
 
 // What the shaders read: the C++ side of opacity_scan.glsl.
 struct MapData {
@@ -99,7 +100,7 @@ OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int re
   const std::size_t wood_triangles = with_wood ? tree.mesh_->wood_triangles.size() : 0;
   for (const Buffer* buffer : {&tree.positions_, &tree.triangles_})
     requireRoom(static_cast<double>(buffer->bytes()), "the tree");
-  requireRoom(4. * static_cast<double>(pixels + 1), "the light's opacity map");
+  requireRoom(12. * static_cast<double>(pixels + 1), "the light's opacity map");
   const MapData data{.corner = frame.corner,
                      .pixels_per_metre = 1. / double{frame.pixel_size},
                      .right = glm::vec4(frame.axes.right, 0.f),
@@ -110,7 +111,7 @@ OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int re
   uniforms.bindUniform(0);
   tree.positions_.bindStorage(kPositions);
   tree.triangles_.bindStorage(kTriangles);
-  Buffer first = Buffer::filled(pixels + 1, 0u);
+  const Buffer first = Buffer::filled(pixels + 1, 0u);
   first.bindStorage(kFirst);
   count_.use();
   dispatch(leaf_triangles, slicesOf(leaf_triangles, tree.longest_edge_, frame));
@@ -139,34 +140,33 @@ OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int re
   sum(Buffer(runs), true);
 
   Buffer crossings = Buffer::filled(2 * crossings_found, 0u);
-  Buffer wood_depth = Buffer::filled(with_wood ? pixels : 0, kNoWood);
+  const Buffer wood_depth = Buffer::filled(pixels, kNoWood);
   crossings.bindStorage(kCrossings);
   wood_depth.bindStorage(kWoodDepth);
   fill_.use();
   const std::size_t triangles = leaf_triangles + wood_triangles;
   dispatch(triangles, slicesOf(triangles, tree.longest_edge_, frame));
+  Buffer lines = Buffer::filled(3 * pixels, 0u);
+  lines.bindStorage(kLines);
   sort_.use();
   glUniform1ui(0, static_cast<GLuint>(pixels));
-  glUniform1i(1, with_wood);
   dispatch(pixels);
   context_->requireNoError("making an opacity map");
-  return {.frame = frame,
-          .first = std::move(first),
-          .crossings = std::move(crossings),
-          .wood_depth = std::move(wood_depth)};
+  return {.frame = frame, .lines = std::move(lines), .crossings = std::move(crossings), .with_wood = with_wood};
 }
 
 DeepOpacityMap OpacityMap::read() const {
-  const std::size_t pixels = first.bytes() / sizeof(std::uint32_t) - 1, count = crossings.bytes() / sizeof(Crossing);
+  const auto of_pixels = lines.read<glm::uvec3>();
+  const std::size_t pixels = of_pixels.size(), count = crossings.bytes() / sizeof(Crossing);
   DeepOpacityMap::Arrays arrays{.first = std::make_unique_for_overwrite<std::uint32_t[]>(pixels + 1),
                                 .crossings = std::make_unique_for_overwrite<Crossing[]>(count),
-                                .wood_depth = nullptr};
-  first.read(std::span(arrays.first.get(), pixels + 1));
-  crossings.read(std::span(arrays.crossings.get(), count));
-  if (wood_depth.bytes() > 0) {
-    arrays.wood_depth = std::make_unique_for_overwrite<float[]>(pixels);
-    wood_depth.read(std::span(arrays.wood_depth.get(), pixels));
+                                .wood_depth = with_wood ? std::make_unique_for_overwrite<float[]>(pixels) : nullptr};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    arrays.first[i] = of_pixels[i].x;
+    if (with_wood) arrays.wood_depth[i] = std::bit_cast<float>(of_pixels[i].z);
   }
+  arrays.first[pixels] = static_cast<std::uint32_t>(count);
+  crossings.read(std::span(arrays.crossings.get(), count));
   return {frame, std::move(arrays)};
 }
 

@@ -20,8 +20,9 @@ struct MapTooLarge : std::runtime_error {
 // A deep opacity map in the current context's memory, as foliage.glsl reads it.
 struct OpacityMap {
   OpacityMapFrame frame;
-  Buffer first, crossings;
-  Buffer wood_depth;  // empty in a map without wood
+  Buffer lines;      // of each pixel: its first crossing, the end of its crossings, the bits of the first wood's depth
+  Buffer crossings;  // the bits of the depth, the leaf
+  bool with_wood;
 
   DeepOpacityMap read() const;  // the same in the program's memory
 };

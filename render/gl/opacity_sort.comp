@@ -1,11 +1,12 @@
 #version 450 core
-// (D14) Sorts the crossings of each pixel by depth, of equal depths by leaf, and turns ordered numbers into depths.
+// (D14) Sorts the crossings of each pixel by depth, of equal depths by leaf, turns ordered numbers into depths, and tells
+// each pixel's line.
 layout(local_size_x = 64) in;
 layout(std430, binding = 2) readonly buffer First { uint first[]; };
 layout(std430, binding = 3) buffer Crossings { uvec2 crossings[]; };  // ordered depth, leaf; then depth, leaf
-layout(std430, binding = 4) buffer WoodDepth { uint wood_depth[]; };
+layout(std430, binding = 4) readonly buffer WoodDepth { uint wood_depth[]; };  // ordered
+layout(std430, binding = 5) writeonly buffer Lines { uint lines[]; };          // see OpacityMap
 layout(location = 0) uniform uint pixels;
-layout(location = 1) uniform bool with_wood;
 
 uint depthBits(uint ordered) { return (ordered >> 31) != 0u ? ordered ^ 0x80000000u : ~ordered; }
 
@@ -32,5 +33,7 @@ void main() {
     }
   }
   for (uint i = 0u; i < count; ++i) crossings[begin + i].x = depthBits(crossings[begin + i].x);
-  if (with_wood) wood_depth[pixel] = depthBits(wood_depth[pixel]);
+  lines[3u * pixel] = begin;
+  lines[3u * pixel + 1u] = begin + count;
+  lines[3u * pixel + 2u] = depthBits(wood_depth[pixel]);
 }
