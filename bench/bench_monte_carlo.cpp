@@ -90,16 +90,16 @@ void visible(benchmark::State& state) {
         {.position = {2.5f * static_cast<float>(i % side), 2.5f * static_cast<float>(i / side), 0.f}});
   const RayScene made(tree(), stand, true);
   const float half = 1.8f * static_cast<float>(side);
-  SightLines lines{.pixels = picture()};
-  const glm::vec3 right = glm::normalize(lines.pixels.right_step), down = glm::normalize(lines.pixels.down_step);
-  lines.pixels.right_step = half / 256.f * right;
-  lines.pixels.down_step = half / 256.f * down;
-  lines.pixels.corner = made.box().centre() - half * (right + down);
+  PixelRays rays = picture();
+  const glm::vec3 right = glm::normalize(rays.right_step), down = glm::normalize(rays.down_step);
+  rays.right_step = half / 256.f * right;
+  rays.down_step = half / 256.f * down;
+  rays.corner = made.box().centre() - half * (right + down);
   double seen = 0.;  // share of the lines that see a tree
-  for (const glm::uvec2& first : visibleSurfaces(made, lines, std::nullopt))
+  for (const glm::uvec2& first : visibleSurfaces(made, rays, glm::vec2(0.5f), std::nullopt))
     seen += (first.x != kNothingSeen) / 262144.;
   if (seen < 0.15 || seen > 0.3) return state.SkipWithError("trees are missing");
-  for (auto _ : state) benchmark::DoNotOptimize(visibleSurfaces(made, lines, std::nullopt).data());
+  for (auto _ : state) benchmark::DoNotOptimize(visibleSurfaces(made, rays, glm::vec2(0.5f), std::nullopt).data());
   state.counters["seen"] = seen;
 }
 BENCHMARK(visible)->Arg(8)->Arg(32)->Arg(100)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();

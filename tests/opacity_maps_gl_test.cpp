@@ -8,7 +8,9 @@
 #include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
 #include "plants/weber_penn.hpp"
+#include "render/gl/opacity_map_store.hpp"
 #include "render/gl/opacity_maps.hpp"
+#include "render/stand_geometry.hpp"
 
 namespace {
 
@@ -84,6 +86,43 @@ TEST(D14_OpacityMapOnTheGpu, DecidesCentresOnEdgesAlike) {
     EXPECT_EQ(found.pixels + found.depths, 0u);
     EXPECT_TRUE(maker.make(tree, along, 8, false).read().woodDepth().empty());
   }
+}
+
+// (D14) Check that a stand whose light's maps come from the graphics card has the same G to the bit, and that maps stay
+// there while they are in use, and no longer.
+TEST(D14_OpacityMapOnTheGpu, ServesAStand) {
+  Scene scene;
+  scene.kinds[0].mesh = std::make_shared<TreeMesh>(randomCrown({.leaves = 500}, 4));
+  scene.stand.trees = {{.position = {0.f, 0.f, 0.f}}, {.position = {2.5f, 0.5f, 0.f}}};
+  const gl::Context context;
+  gl::OpacityMapStore store(context);
+  GeometryEffort effort{.light_resolution = 64, .sample_directions = 6, .sample_resolution = 32, .cells = 8};
+  StandGeometry expected(effort);
+  int made = 0;
+  effort.light_map = [&](const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution) {
+    ++made;
+    return store.map(mesh, along, resolution).read();
+  };
+  StandGeometry stand(effort);
+  std::vector<Direction> suns;
+  for (int sun = 0; sun < 6; ++sun) {
+    scene.suns[0].zenith = 0.2f * static_cast<float>(sun);
+    suns.push_back(scene.suns[0].light());
+    stand.update(scene);
+    expected.update(scene);
+    EXPECT_EQ(made, sun + 1);
+    for (std::size_t tree = 0; tree < 2; ++tree) {
+      const std::span<const float> compensation = stand.compensation(tree, 0);
+      EXPECT_GT(std::ranges::max(compensation), 0.5f);
+      EXPECT_TRUE(std::ranges::equal(compensation, expected.compensation(tree, 0)));
+    }
+  }
+  EXPECT_EQ(&store.map(scene.kinds[0].mesh, suns[5], 64), &store.map(scene.kinds[0].mesh, suns[5], 64));
+  EXPECT_EQ(store.kept(), kMostSuns);
+  scene.kinds[0].mesh = std::make_shared<TreeMesh>(randomCrown({.leaves = 300}, 5));
+  expected.update(scene);
+  stand.update(scene);
+  EXPECT_EQ(store.kept(), 1u);
 }
 
 // (D14) Check that the same map is the same on every run, though crossings come in another order.

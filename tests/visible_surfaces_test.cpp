@@ -17,28 +17,34 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Of a square picture about the origin, 6 m wide.
-SightLines linesAlong(const Direction& sight, int side) {
+PixelRays linesAlong(const Direction& sight, int side) {
   const Axes axes = axesAlong(sight);
   const float pixel = 6.f / static_cast<float>(side);
-  return {.pixels = {.corner = -3.f * (axes.right + axes.up) - 50.f * sight,
-                     .right_step = pixel * axes.right,
-                     .down_step = pixel * axes.up,
-                     .sight = sight,
-                     .width = side,
-                     .height = side},
-          .eye = std::nullopt,
-          .within = {0.25f, 0.75f}};
+  return {.corner = -3.f * (axes.right + axes.up) - 50.f * sight,
+          .right_step = pixel * axes.right,
+          .down_step = pixel * axes.up,
+          .sight = sight,
+          .width = side,
+          .height = side,
+          .eye = std::nullopt};
 }
+// The same picture seen from an eye that far away.
+PixelRays linesFrom(float distance, const Direction& sight, int side) {
+  PixelRays rays = linesAlong(sight, side);
+  rays.corner += (50.f + distance) * sight;
+  rays.eye = -distance * sight;
+  return rays;
+}
+constexpr glm::vec2 kWithin(0.25f, 0.75f);
 
 struct Line {
   glm::dvec3 from, along;
 };
-Line lineOf(const SightLines& lines, int x, int y) {
-  const glm::dvec3 place = glm::dvec3(lines.pixels.corner) +
-                           (x + double{lines.within.x}) * glm::dvec3(lines.pixels.right_step) +
-                           (y + double{lines.within.y}) * glm::dvec3(lines.pixels.down_step);
-  if (!lines.eye) return {place, lines.pixels.sight};
-  return {*lines.eye, glm::normalize(place - glm::dvec3(*lines.eye))};
+Line lineOf(const PixelRays& rays, int x, int y) {
+  const glm::dvec3 place = glm::dvec3(rays.corner) + (x + double{kWithin.x}) * glm::dvec3(rays.right_step) +
+                           (y + double{kWithin.y}) * glm::dvec3(rays.down_step);
+  if (!rays.eye) return {place, rays.sight};
+  return {*rays.eye, glm::normalize(place)};
 }
 
 // Distance at which a line meets a triangle, infinite where it does not (Moeller & Trumbore 1997).
@@ -104,20 +110,16 @@ TEST(R32_VisibleSurfaces, AreTheFirstOfAllTriangles) {
   const RayScene scene(kinds, stand, true);
   const VisibleDisc disc{.centre = {0.f, 0.2f, -1.25f}, .radius = 2.f};
   constexpr int kSide = 50;
-  SightLines from_eye = linesAlong(glm::normalize(glm::vec3(1.f, 2.f, -1.f)), kSide);
-  from_eye.pixels.corner += 50.f * from_eye.pixels.sight;
-  from_eye.eye = -4.f * from_eye.pixels.sight;
-  SightLines among = from_eye;
-  among.eye = -0.5f * from_eye.pixels.sight;
+  const Direction slanting = glm::normalize(glm::vec3(1.f, 2.f, -1.f));
   int different = 0;
   std::array<int, 4> of{};  // lines that see leaves, wood, the disc, nothing
-  for (const SightLines& lines : {linesAlong({0.f, 0.f, -1.f}, kSide),
-                                  linesAlong(glm::normalize(glm::vec3(1.f, 2.f, -1.f)), kSide), from_eye, among}) {
-    const std::vector<glm::uvec2> seen = visibleSurfaces(scene, lines, disc);
+  for (const PixelRays& rays : {linesAlong({0.f, 0.f, -1.f}, kSide), linesAlong(slanting, kSide),
+                                linesFrom(4.f, slanting, kSide), linesFrom(0.5f, slanting, kSide)}) {
+    const std::vector<glm::uvec2> seen = visibleSurfaces(scene, rays, kWithin, disc);
     ASSERT_EQ(seen.size(), std::size_t{kSide} * kSide);
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
-        const glm::uvec2 expected = firstOf(kinds, stand, disc, lineOf(lines, x, y));
+        const glm::uvec2 expected = firstOf(kinds, stand, disc, lineOf(rays, x, y));
         different += seen[static_cast<std::size_t>(y * kSide + x)] != expected;
         if (expected.x == kNothingSeen)
           ++of[3];
@@ -138,11 +140,10 @@ TEST(R32_VisibleSurfaces, OfOneTreeFarAway) {
   addPolygon(leaf, leaf.leaf_triangles, rectangle({0, 0, 0}, {1.25f, 0, 0}, {0, 3, 0}));
   finish(leaf, "leaf");
   const RayScene scene(std::array<const TreeMesh*, 1>{&leaf}, Stand{.trees = {{.position = {5000.f, 0.f, 0.f}}}}, true);
-  SightLines lines = linesAlong({0.f, 0.f, -1.f}, 6);
-  lines.pixels.corner.x += 5000.f;
-  lines.pixels.height = 5;
-  lines.within = {0.5f, 0.5f};
-  const std::vector<glm::uvec2> seen = visibleSurfaces(scene, lines, std::nullopt);
+  PixelRays rays = linesAlong({0.f, 0.f, -1.f}, 6);
+  rays.corner.x += 5000.f;
+  rays.height = 5;
+  const std::vector<glm::uvec2> seen = visibleSurfaces(scene, rays, {0.5f, 0.5f}, std::nullopt);
   ASSERT_EQ(seen.size(), 30u);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const std::size_t column = i % 6;
@@ -153,8 +154,8 @@ TEST(R32_VisibleSurfaces, OfOneTreeFarAway) {
 TEST(R32_VisibleSurfaces, RefusesWhatHasNoNumbers) {
   const TreeMesh tree = leafBox(5, 1);
   const RayScene periodic(tree, Stand{.period = glm::vec2(3.f)}, true);
-  EXPECT_THROW(visibleSurfaces(periodic, linesAlong({0.f, 0.f, -1.f}, 4), std::nullopt), InvalidInput);
-  SightLines empty = linesAlong({0.f, 0.f, -1.f}, 4);
-  empty.pixels.width = 0;
-  EXPECT_THROW(visibleSurfaces(RayScene(tree, Stand{}, true), empty, std::nullopt), InvalidInput);
+  EXPECT_THROW(visibleSurfaces(periodic, linesAlong({0.f, 0.f, -1.f}, 4), kWithin, std::nullopt), InvalidInput);
+  PixelRays empty = linesAlong({0.f, 0.f, -1.f}, 4);
+  empty.width = 0;
+  EXPECT_THROW(visibleSurfaces(RayScene(tree, Stand{}, true), empty, kWithin, std::nullopt), InvalidInput);
 }

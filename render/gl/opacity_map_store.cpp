@@ -21,4 +21,10 @@ const OpacityMap& OpacityMapStore::map(const std::shared_ptr<const TreeMesh>& me
   return maps.front().map;
 }
 
+std::size_t OpacityMapStore::kept() const {
+  std::size_t count = 0;
+  for (const Tree& tree : trees_) count += tree.maps.size();
+  return count;
+}
+
 }  // namespace sunfleck::gl

@@ -17,6 +17,8 @@ class OpacityMapStore {
   explicit OpacityMapStore(const Context& context) : maker_(context) {}
   const OpacityMap& map(const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution);
 
+  std::size_t kept() const;  // number of maps
+
  private:
   struct Kept {
     Direction along;

@@ -24,14 +24,11 @@ constexpr int kRowsAtOnce = 256;                   // between two words about pr
 
 class Looking {
  public:
-  Looking(const RayScene& scene, const SightLines& lines, const std::optional<VisibleDisc>& disc)
-      : scene_(scene.geometry()),
-        rays_(lines.pixels),
-        eye_(lines.eye),
-        corner_(rays_.corner + lines.within.x * rays_.right_step + lines.within.y * rays_.down_step),
-        disc_(disc) {
-    for (glm::vec3* place : {&corner_, eye_ ? &*eye_ : nullptr, disc_ ? &disc_->centre : nullptr})
-      if (place) *place -= scene_.origin;
+  Looking(const RayScene& scene, const PixelRays& rays, const glm::vec2& within, const std::optional<VisibleDisc>& disc)
+      : scene_(scene.geometry()), rays_(rays), disc_(disc) {
+    (rays_.eye ? *rays_.eye : rays_.corner) -= scene_.origin;
+    rays_.corner += within.x * rays_.right_step + within.y * rays_.down_step;
+    if (disc_) disc_->centre -= scene_.origin;
     reach_ = 0.5f * glm::length(scene_.box.size()) + 8.f * scene_.lift;
     if (disc_) reach_ = std::max(reach_, disc_->radius + glm::length(disc_->centre - scene_.box.centre()));
   }
@@ -45,9 +42,9 @@ class Looking {
       const auto ray = static_cast<std::size_t>(i);
       valid[ray] = x < right && y < bottom ? -1 : 0;
       const glm::vec3 place =
-          corner_ + static_cast<float>(x) * rays_.right_step + static_cast<float>(y) * rays_.down_step;
-      const Direction sight = eye_ ? glm::normalize(place - *eye_) : rays_.sight;
-      const glm::vec3 from = startOf(place, sight);
+          rays_.corner + static_cast<float>(x) * rays_.right_step + static_cast<float>(y) * rays_.down_step;
+      const Direction sight = rays_.eye ? glm::normalize(place) : rays_.sight;
+      const glm::vec3 from = startOf(rays_.eye.value_or(place), sight);
       set(packet.ray, ray, from, sight, toDisc(from, sight));
       packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -61,10 +58,9 @@ class Looking {
 
  private:
   // Right before all there is to be seen, where positions are exact, but not before the eye.
-  glm::vec3 startOf(const glm::vec3& place, const Direction& sight) const {
-    const glm::vec3& on_line = eye_ ? *eye_ : place;
+  glm::vec3 startOf(const glm::vec3& on_line, const Direction& sight) const {
     const float distance = glm::dot(scene_.box.centre() - on_line, sight) - reach_;
-    return on_line + (eye_ ? std::max(0.f, distance) : distance) * sight;
+    return on_line + (rays_.eye ? std::max(0.f, distance) : distance) * sight;
   }
   float toDisc(const glm::vec3& from, const Direction& sight) const {
     if (!disc_ || sight.z >= 0.f || from.z < disc_->centre.z) return kInfinity;
@@ -82,23 +78,19 @@ class Looking {
   }
 
   const RayScene::Geometry& scene_;
-  PixelRays rays_;
-  // About the scene's origin [m]:
-  std::optional<glm::vec3> eye_;
-  glm::vec3 corner_;  // on the first pixel's line
-  std::optional<VisibleDisc> disc_;
-  float reach_;  // from the middle of the box, of all there is to be seen
+  PixelRays rays_;                   // through the places looked at, about the scene's origin
+  std::optional<VisibleDisc> disc_;  // about the scene's origin
+  float reach_;                      // from the middle of the box, of all there is to be seen [m]
 };
 
 }  // namespace
 
-std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const SightLines& lines,
+std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const PixelRays& rays, const glm::vec2& within,
                                         const std::optional<VisibleDisc>& disc, const Progress& progress) {
-  const PixelRays& rays = lines.pixels;
   validate(rays);
   if (scene.geometry().period) throw InvalidInput("visible surfaces: the stand must not be periodic");
   std::vector<glm::uvec2> seen(static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height));
-  const Looking looking(scene, lines, disc);
+  const Looking looking(scene, rays, within, disc);
   const int across = (rays.width + kTile - 1) / kTile;
   for (int rows = 0; rows < rays.height; rows += kRowsAtOnce) {
     if (!goOn(progress, static_cast<double>(rows) / rays.height)) throw std::runtime_error("interrupted");

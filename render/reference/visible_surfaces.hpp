@@ -12,13 +12,6 @@
 
 namespace sunfleck {
 
-// Lines of sight, one through each pixel of a picture.
-struct SightLines {
-  PixelRays pixels;
-  std::optional<glm::vec3> eye;  // in perspective: where the lines begin, whatever `pixels.sight` [m]
-  glm::vec2 within{0.5f};        // place in each pixel from its corner, in steps to the right and down; 0 .. 1
-};
-
 // A level disc that is seen from above.
 struct VisibleDisc {
   glm::vec3 centre{0.f};  // [m]
@@ -32,7 +25,7 @@ inline constexpr std::uint32_t kNothingSeen = 0xffffffffu, kDiscSeen = 0xfffffff
 // tree is seen. Works in parallel; the same for any number of threads. Throws InvalidInput for pixels out of their
 // ranges and for a periodic stand, whose copies have no numbers, and std::runtime_error("interrupted") when `progress`
 // ends it.
-std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const SightLines& lines,
+std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const PixelRays& rays, const glm::vec2& within,
                                         const std::optional<VisibleDisc>& disc, const Progress& progress = {});
 
 }  // namespace sunfleck
