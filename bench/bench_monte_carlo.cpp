@@ -96,10 +96,10 @@ void visible(benchmark::State& state) {
   rays.down_step = half / 256.f * down;
   rays.corner = made.box().centre() - half * (right + down);
   double seen = 0.;  // share of the lines that see a tree
-  for (const glm::uvec2& first : visibleSurfaces(made, rays, glm::vec2(0.5f), std::nullopt))
+  for (const glm::uvec2& first : visibleSurfaces(made, rays, glm::vec2(0.5f)))
     seen += (first.x != kNothingSeen) / 262144.;
   if (seen < 0.15 || seen > 0.3) return state.SkipWithError("trees are missing");
-  for (auto _ : state) benchmark::DoNotOptimize(visibleSurfaces(made, rays, glm::vec2(0.5f), std::nullopt).data());
+  for (auto _ : state) benchmark::DoNotOptimize(visibleSurfaces(made, rays, glm::vec2(0.5f)).data());
   state.counters["seen"] = seen;
 }
 BENCHMARK(visible)->Arg(8)->Arg(32)->Arg(100)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();

@@ -57,8 +57,7 @@ double distanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
 }
 
 // What a line sees first, every triangle of every tree tried.
-glm::uvec2 firstOf(std::span<const TreeMesh* const> kinds, const Stand& stand, const VisibleDisc& disc,
-                   const Line& line) {
+glm::uvec2 firstOf(std::span<const TreeMesh* const> kinds, const Stand& stand, const Line& line) {
   glm::uvec2 seen(kNothingSeen, 0u);
   double nearest = kInfinity;
   for (std::uint32_t i = 0; i < stand.trees.size(); ++i) {
@@ -80,10 +79,6 @@ glm::uvec2 firstOf(std::span<const TreeMesh* const> kinds, const Stand& stand, c
         ++number;
       }
   }
-  const double to_disc = (double{disc.centre.z} - line.from.z) / line.along.z;
-  const glm::dvec2 at = line.from + to_disc * line.along - glm::dvec3(disc.centre);
-  if (line.along.z < 0. && to_disc > 0. && to_disc < nearest && glm::length(at) < double{disc.radius})
-    return {kDiscSeen, 0u};
   return seen;
 }
 
@@ -98,7 +93,7 @@ TreeMesh trunkAndLeaves(int leaves, std::uint64_t seed) {
 
 }  // namespace
 
-// (R32) Check what is seen of trees of two kinds, turned and moved, and of a disc below, by parallel lines and from an
+// (R32) Check what is seen of trees of two kinds, turned and moved, by parallel lines and from an
 // eye, beside and among the trees, against every triangle tried in double precision. A line that passes an edge within
 // rounding (1e-6 m of 1e-1 m, some 10 edges in sight of each line: 1e-4) could differ: 10 of 10,000 at the most.
 TEST(R32_VisibleSurfaces, AreTheFirstOfAllTriangles) {
@@ -108,22 +103,19 @@ TEST(R32_VisibleSurfaces, AreTheFirstOfAllTriangles) {
                               {.position = {0.f, 1.5f, 0.f}, .rotation = 2.1f},
                               {.position = {-1.f, -1.f, 0.2f}, .rotation = -1.f, .kind = 1}}};
   const RayScene scene(kinds, stand, true);
-  const VisibleDisc disc{.centre = {0.f, 0.2f, -1.25f}, .radius = 2.f};
   constexpr int kSide = 50;
   const Direction slanting = glm::normalize(glm::vec3(1.f, 2.f, -1.f));
   int different = 0;
-  std::array<int, 4> of{};  // lines that see leaves, wood, the disc, nothing
+  std::array<int, 3> of{};  // lines that see leaves, wood, nothing
   for (const PixelRays& rays : {linesAlong({0.f, 0.f, -1.f}, kSide), linesAlong(slanting, kSide),
                                 linesFrom(4.f, slanting, kSide), linesFrom(0.5f, slanting, kSide)}) {
-    const std::vector<glm::uvec2> seen = visibleSurfaces(scene, rays, kWithin, disc);
+    const std::vector<glm::uvec2> seen = visibleSurfaces(scene, rays, kWithin);
     ASSERT_EQ(seen.size(), std::size_t{kSide} * kSide);
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
-        const glm::uvec2 expected = firstOf(kinds, stand, disc, lineOf(rays, x, y));
+        const glm::uvec2 expected = firstOf(kinds, stand, lineOf(rays, x, y));
         different += seen[static_cast<std::size_t>(y * kSide + x)] != expected;
         if (expected.x == kNothingSeen)
-          ++of[3];
-        else if (expected.x == kDiscSeen)
           ++of[2];
         else
           ++of[expected.y >= kinds[stand.trees[expected.x].kind]->leaf_triangles.size()];
@@ -134,7 +126,7 @@ TEST(R32_VisibleSurfaces, AreTheFirstOfAllTriangles) {
 }
 
 // Check that a tree alone, which Embree holds without an instance, is tree 0, also far from the world's origin and in a
-// picture whose sides are no multiples of what is looked at together; and that a disc that is not there is not seen.
+// picture whose sides are no multiples of what is looked at together.
 TEST(R32_VisibleSurfaces, OfOneTreeFarAway) {
   TreeMesh leaf;
   addPolygon(leaf, leaf.leaf_triangles, rectangle({0, 0, 0}, {1.25f, 0, 0}, {0, 3, 0}));
@@ -143,7 +135,7 @@ TEST(R32_VisibleSurfaces, OfOneTreeFarAway) {
   PixelRays rays = linesAlong({0.f, 0.f, -1.f}, 6);
   rays.corner.x += 5000.f;
   rays.height = 5;
-  const std::vector<glm::uvec2> seen = visibleSurfaces(scene, rays, {0.5f, 0.5f}, std::nullopt);
+  const std::vector<glm::uvec2> seen = visibleSurfaces(scene, rays, {0.5f, 0.5f});
   ASSERT_EQ(seen.size(), 30u);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const std::size_t column = i % 6;
@@ -154,8 +146,8 @@ TEST(R32_VisibleSurfaces, OfOneTreeFarAway) {
 TEST(R32_VisibleSurfaces, RefusesWhatHasNoNumbers) {
   const TreeMesh tree = leafBox(5, 1);
   const RayScene periodic(tree, Stand{.period = glm::vec2(3.f)}, true);
-  EXPECT_THROW(visibleSurfaces(periodic, linesAlong({0.f, 0.f, -1.f}, 4), kWithin, std::nullopt), InvalidInput);
+  EXPECT_THROW(visibleSurfaces(periodic, linesAlong({0.f, 0.f, -1.f}, 4), kWithin), InvalidInput);
   PixelRays empty = linesAlong({0.f, 0.f, -1.f}, 4);
   empty.width = 0;
-  EXPECT_THROW(visibleSurfaces(RayScene(tree, Stand{}, true), empty, kWithin, std::nullopt), InvalidInput);
+  EXPECT_THROW(visibleSurfaces(RayScene(tree, Stand{}, true), empty, kWithin), InvalidInput);
 }

@@ -15,6 +15,7 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   std::string renderer() const;  // what draws, as the driver names it
+  bool drawsInSoftware() const;  // on the processor
   void finish() const;           // returns when all that was asked for is done
   // Throws std::runtime_error with the first error the driver has reported since the last call, if any.
   //   work  what was being done, for the message

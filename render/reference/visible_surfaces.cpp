@@ -24,13 +24,11 @@ constexpr int kRowsAtOnce = 256;                   // between two words about pr
 
 class Looking {
  public:
-  Looking(const RayScene& scene, const PixelRays& rays, const glm::vec2& within, const std::optional<VisibleDisc>& disc)
-      : scene_(scene.geometry()), rays_(rays), disc_(disc) {
+  Looking(const RayScene& scene, const PixelRays& rays, const glm::vec2& within)
+      : scene_(scene.geometry()), rays_(rays) {
     (rays_.eye ? *rays_.eye : rays_.corner) -= scene_.origin;
     rays_.corner += within.x * rays_.right_step + within.y * rays_.down_step;
-    if (disc_) disc_->centre -= scene_.origin;
     reach_ = 0.5f * glm::length(scene_.box.size()) + 8.f * scene_.lift;
-    if (disc_) reach_ = std::max(reach_, disc_->radius + glm::length(disc_->centre - scene_.box.centre()));
   }
 
   // At the pixels from (left, top) on that are left of `right` and above `bottom`, at most kSide each way.
@@ -45,7 +43,7 @@ class Looking {
           rays_.corner + static_cast<float>(x) * rays_.right_step + static_cast<float>(y) * rays_.down_step;
       const Direction sight = rays_.eye ? glm::normalize(place) : rays_.sight;
       const glm::vec3 from = startOf(rays_.eye.value_or(place), sight);
-      set(packet.ray, ray, from, sight, toDisc(from, sight));
+      set(packet.ray, ray, from, sight, kInfinity);
       packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -57,20 +55,13 @@ class Looking {
   }
 
  private:
-  // Right before all there is to be seen, where positions are exact, but not before the eye.
+  // Right before the box, where positions are exact, but not before the eye.
   glm::vec3 startOf(const glm::vec3& on_line, const Direction& sight) const {
     const float distance = glm::dot(scene_.box.centre() - on_line, sight) - reach_;
     return on_line + (rays_.eye ? std::max(0.f, distance) : distance) * sight;
   }
-  float toDisc(const glm::vec3& from, const Direction& sight) const {
-    if (!disc_ || sight.z >= 0.f || from.z < disc_->centre.z) return kInfinity;
-    const float distance = (disc_->centre.z - from.z) / sight.z;
-    const glm::vec2 at = glm::vec2(from + distance * sight - disc_->centre);
-    return glm::length(at) < disc_->radius ? distance : kInfinity;
-  }
   glm::uvec2 met(const RTCRayHit16& packet, int i) const {
-    if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
-      return {packet.ray.tfar[i] < kInfinity ? kDiscSeen : kNothingSeen, 0u};
+    if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) return {kNothingSeen, 0u};
     const unsigned instance = packet.hit.instID[0][i] == RTC_INVALID_GEOMETRY_ID ? 0 : packet.hit.instID[0][i];
     const Prototype& prototype = scene_.prototypes[scene_.copies[instance].kind];
     const std::size_t leaf_triangles = packet.hit.geomID[i] == kWood ? prototype.leaf_of_triangle.size() : 0;
@@ -78,19 +69,18 @@ class Looking {
   }
 
   const RayScene::Geometry& scene_;
-  PixelRays rays_;                   // through the places looked at, about the scene's origin
-  std::optional<VisibleDisc> disc_;  // about the scene's origin
-  float reach_;                      // from the middle of the box, of all there is to be seen [m]
+  PixelRays rays_;  // through the places looked at, about the scene's origin
+  float reach_;     // from the middle of the box to all there is [m]
 };
 
 }  // namespace
 
 std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const PixelRays& rays, const glm::vec2& within,
-                                        const std::optional<VisibleDisc>& disc, const Progress& progress) {
+                                        const Progress& progress) {
   validate(rays);
   if (scene.geometry().period) throw InvalidInput("visible surfaces: the stand must not be periodic");
   std::vector<glm::uvec2> seen(static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height));
-  const Looking looking(scene, rays, within, disc);
+  const Looking looking(scene, rays, within);
   const int across = (rays.width + kTile - 1) / kTile;
   for (int rows = 0; rows < rays.height; rows += kRowsAtOnce) {
     if (!goOn(progress, static_cast<double>(rows) / rays.height)) throw std::runtime_error("interrupted");

@@ -2,8 +2,6 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <optional>
 #include <vector>
 
 #include "core/progress.hpp"
@@ -12,13 +10,7 @@
 
 namespace sunfleck {
 
-// A level disc that is seen from above.
-struct VisibleDisc {
-  glm::vec3 centre{0.f};  // [m]
-  float radius = 0.f;     // [m]
-};
-
-inline constexpr std::uint32_t kNothingSeen = 0xffffffffu, kDiscSeen = 0xfffffffeu;
+inline constexpr std::uint32_t kNothingSeen = 0xffffffffu;
 
 // (R32) What is seen along lines of sight: of pixel (x, y), at y * width + x, in .x the number of the tree in the
 // stand, kDiscSeen or kNothingSeen, and in .y the triangle of its kind, leaves first and wood after them; 0 where no
@@ -26,6 +18,6 @@ inline constexpr std::uint32_t kNothingSeen = 0xffffffffu, kDiscSeen = 0xfffffff
 // ranges and for a periodic stand, whose copies have no numbers, and std::runtime_error("interrupted") when `progress`
 // ends it.
 std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const PixelRays& rays, const glm::vec2& within,
-                                        const std::optional<VisibleDisc>& disc, const Progress& progress = {});
+                                        const Progress& progress = {});
 
 }  // namespace sunfleck
