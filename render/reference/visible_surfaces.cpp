@@ -7,7 +7,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <stdexcept>
 
 #include "core/require.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
@@ -20,7 +19,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr unsigned kWood = 1;                      // Embree's geometry number
 constexpr int kSide = 4, kPacket = kSide * kSide;  // pixels looked at together
 constexpr int kTile = 32;                          // pixels along a task's side
-constexpr int kRowsAtOnce = 256;                   // between two words about progress
 
 class Looking {
  public:
@@ -75,23 +73,18 @@ class Looking {
 
 }  // namespace
 
-std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const PixelRays& rays, const glm::vec2& within,
-                                        const Progress& progress) {
+std::vector<glm::uvec2> visibleSurfaces(const RayScene& scene, const PixelRays& rays, const glm::vec2& within) {
   validate(rays);
   if (scene.geometry().period) throw InvalidInput("visible surfaces: the stand must not be periodic");
   std::vector<glm::uvec2> seen(static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height));
   const Looking looking(scene, rays, within);
-  const int across = (rays.width + kTile - 1) / kTile;
-  for (int rows = 0; rows < rays.height; rows += kRowsAtOnce) {
-    if (!goOn(progress, static_cast<double>(rows) / rays.height)) throw std::runtime_error("interrupted");
-    const int rows_end = std::min(rows + kRowsAtOnce, rays.height), down = (rows_end - rows + kTile - 1) / kTile;
-    tbb::parallel_for(0, across * down, [&](int tile) {
-      const int left = tile % across * kTile, top = rows + tile / across * kTile;
-      const int right = std::min(left + kTile, rays.width), bottom = std::min(top + kTile, rows_end);
-      for (int y = top; y < bottom; y += kSide)
-        for (int x = left; x < right; x += kSide) looking.look(x, y, right, bottom, seen);
-    });
-  }
+  const int across = (rays.width + kTile - 1) / kTile, down = (rays.height + kTile - 1) / kTile;
+  tbb::parallel_for(0, across * down, [&](int tile) {
+    const int left = tile % across * kTile, top = tile / across * kTile;
+    const int right = std::min(left + kTile, rays.width), bottom = std::min(top + kTile, rays.height);
+    for (int y = top; y < bottom; y += kSide)
+      for (int x = left; x < right; x += kSide) looking.look(x, y, right, bottom, seen);
+  });
   return seen;
 }
 
