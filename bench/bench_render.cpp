@@ -8,7 +8,6 @@
 #include "grid/deep_opacity_map.hpp"
 #include "plants/random_leaves.hpp"
 #include "render/gl/context.hpp"
-#include "render/gl/opacity_maps.hpp"
 #include "render/gl/tree_renderer.hpp"
 
 namespace {
@@ -68,35 +67,5 @@ void picture(benchmark::State& state, Model model) {
 BENCHMARK_CAPTURE(picture, ss, Model::ss)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK_CAPTURE(picture, spp, Model::spp)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK_CAPTURE(picture, sppg, Model::sppg)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
-
-// The light's map of that many pixels along its side, in the memory of whoever made it.
-void mapOfProcessor(benchmark::State& state) {
-  const TreeMesh mesh = randomCrown({}, 1);
-  for (auto _ : state)
-    benchmark::DoNotOptimize(
-        DeepOpacityMap(mesh, spreadAxes(7)[2], static_cast<int>(state.range(0))).crossings().data());
-}
-void mapOfGraphicsCard(benchmark::State& state) {
-  const TreeMesh mesh = randomCrown({}, 1);
-  const gl::Context context;
-  const gl::OpacityMapMaker maker(context);
-  const gl::MappedTree tree(mesh);
-  const auto make = [&] { return maker.make(tree, spreadAxes(7)[2], static_cast<int>(state.range(0))); };
-  const DeepOpacityMap expected(mesh, spreadAxes(7)[2], static_cast<int>(state.range(0)));
-  if (!std::ranges::equal(make().read().first(), expected.first())) return state.SkipWithError("wrong answer");
-  for (auto _ : state) {
-    const gl::OpacityMap map = make();
-    context.finish();
-  }
-  state.SetLabel(context.renderer());
-}
-
-BENCHMARK(mapOfProcessor)->Arg(512)->Arg(1024)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
-BENCHMARK(mapOfGraphicsCard)
-    ->Arg(512)
-    ->Arg(1024)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime();
 
 }  // namespace

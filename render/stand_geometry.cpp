@@ -123,15 +123,15 @@ void requireModelled(const Scene& scene) {
 }
 
 GeometryNeeds needsOf(Model model) {
-  return {.compensation = model == Model::sppg};
+  return {.compensation = needsCompensation(model)};
 }
 
-StandGeometry::StandGeometry(const GeometryEffort& effort)
+StandGeometry::StandGeometry(const GeometryEffort& effort, MapMaker light_map)
     : foliage_(std::make_unique<FoliageStand>(FoliageEffort{.axes = spreadAxes(effort.sample_directions / 2),
                                                             .sample_resolution = effort.sample_resolution,
                                                             .light_resolution = effort.light_resolution,
                                                             .cells = effort.cells,
-                                                            .light_map = effort.light_map})) {
+                                                            .light_map = std::move(light_map)})) {
   static_assert(FoliageStand::kMostLights == kMostSuns);
 }
 

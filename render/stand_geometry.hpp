@@ -22,7 +22,6 @@ struct GeometryEffort {
   int sample_directions = 22;   // of the G-factor, even: both directions of half as many axes
   int sample_resolution = 256;  // pixels along the longer side of each of their maps
   int cells = 16;               // along the longest side of a tree
-  MapMaker light_map{};         // of the light's maps, called by the thread that updates; none: by the processor
 };
 
 // The models hold numbers for every leaf of every tree; pictures for every cell.
@@ -67,7 +66,8 @@ struct StandKind {
 // and sky light of the cells. It serves one scene after another and computes only what the next one changes.
 class StandGeometry {
  public:
-  explicit StandGeometry(const GeometryEffort& effort = {});
+  //   light_map  makes the lights' maps, called by the thread that updates; none: the processor does
+  explicit StandGeometry(const GeometryEffort& effort = {}, MapMaker light_map = {});
 
   // Brings the lights' maps up to date for the scene, and what else is needed of the trees listed. Throws InvalidInput
   // as requireDrawable() and sunAndSky() do, and std::runtime_error("interrupted") when `progress` ends it: what is

@@ -96,14 +96,13 @@ TEST(D14_OpacityMapOnTheGpu, ServesAStand) {
   scene.stand.trees = {{.position = {0.f, 0.f, 0.f}}, {.position = {2.5f, 0.5f, 0.f}}};
   const gl::Context context;
   gl::OpacityMapStore store(context);
-  GeometryEffort effort{.light_resolution = 64, .sample_directions = 6, .sample_resolution = 32, .cells = 8};
+  const GeometryEffort effort{.light_resolution = 64, .sample_directions = 6, .sample_resolution = 32, .cells = 8};
   StandGeometry expected(effort);
   int made = 0;
-  effort.light_map = [&](const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution) {
+  StandGeometry stand(effort, [&](const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution) {
     ++made;
     return store.map(mesh, along, resolution).read();
-  };
-  StandGeometry stand(effort);
+  });
   std::vector<Direction> suns;
   for (int sun = 0; sun < 6; ++sun) {
     scene.suns[0].zenith = 0.2f * static_cast<float>(sun);
@@ -184,7 +183,7 @@ TEST(D14_OpacityMapOnTheGpu, RefusesLinesTooLong) {
   try {
     maker.make(tree, {0, 0, -1}, 4);
     FAIL() << "a map of lines of 1025 leaves was made";
-  } catch (const gl::MapTooLarge& e) {
+  } catch (const gl::TooLarge& e) {
     EXPECT_NE(std::string(e.what()).find("crosses 1025 leaves"), std::string::npos) << e.what();
   }
 }
@@ -206,7 +205,7 @@ TEST(D14_OpacityMapOnTheGpu, RefusesWhatShadersCannotRead) {
   try {
     gl::OpacityMapMaker(context).make(gl::MappedTree(mesh), {0, 0, -1}, kSide);
     FAIL() << "a map of " << leaves << " leaves was made";
-  } catch (const gl::MapTooLarge& e) {
+  } catch (const gl::TooLarge& e) {
     EXPECT_NE(std::string(e.what()).find("MB in one piece: must be at most 134.2 MB"), std::string::npos) << e.what();
   }
 }

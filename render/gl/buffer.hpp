@@ -9,7 +9,7 @@
 
 namespace sunfleck::gl {
 
-// Memory of the current context, filled once from the program's or by shaders.
+// Memory of the current context, filled once from the program's, by and by, or by shaders.
 class Buffer {
  public:
   // Values of a plain type, laid out as the shaders read them. An empty span becomes a few zero bytes, since OpenGL
@@ -19,6 +19,9 @@ class Buffer {
   template <typename T>
   explicit Buffer(const std::vector<T>& values) : Buffer(std::span<const T>(values)) {}
   explicit Buffer(std::span<const std::byte> content);
+  // Room that is filled by and by.
+  static Buffer writable(std::size_t bytes);
+  void write(std::size_t first_byte, std::span<const std::byte> content);
   // So many words of 4 bytes, all the same, for shaders to write.
   static Buffer filled(std::size_t words, std::uint32_t word);
 

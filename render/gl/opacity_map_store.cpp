@@ -21,6 +21,13 @@ const OpacityMap& OpacityMapStore::map(const std::shared_ptr<const TreeMesh>& me
   return maps.front().map;
 }
 
+const OpacityMap* OpacityMapStore::find(const std::shared_ptr<const TreeMesh>& mesh, Direction along) const {
+  const auto tree = std::ranges::find(trees_, mesh, &Tree::mesh);
+  if (tree == trees_.end()) return nullptr;
+  const auto found = std::ranges::find(tree->maps, along, &Kept::along);
+  return found == tree->maps.end() ? nullptr : &found->map;
+}
+
 std::size_t OpacityMapStore::kept() const {
   std::size_t count = 0;
   for (const Tree& tree : trees_) count += tree.maps.size();

@@ -17,6 +17,8 @@ class OpacityMapStore {
   explicit OpacityMapStore(const Context& context) : maker_(context) {}
   const OpacityMap& map(const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution);
 
+  // The last that was made of that tree along that light, if it is still there.
+  const OpacityMap* find(const std::shared_ptr<const TreeMesh>& mesh, Direction along) const;
   std::size_t kept() const;  // number of maps
 
  private:

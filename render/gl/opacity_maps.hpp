@@ -1,21 +1,16 @@
 #pragma once
 
 #include <cstddef>
-#include <stdexcept>
 
 #include "core/directions.hpp"
 #include "core/tree_mesh.hpp"
 #include "grid/deep_opacity_map.hpp"
 #include "render/gl/buffer.hpp"
+#include "render/gl/buffer_texture.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/program.hpp"
 
 namespace sunfleck::gl {
-
-// An opacity map is more than this OpenGL lets a shader read.
-struct MapTooLarge : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // A deep opacity map in the current context's memory, as foliage.glsl reads it.
 struct OpacityMap {
@@ -47,7 +42,7 @@ class OpacityMapMaker {
   // A `context` must be current wherever it is used, and outlive it.
   explicit OpacityMapMaker(const Context& context);
 
-  // As DeepOpacityMap's constructor. Throws MapTooLarge where an array of the tree or the map is larger than shaders
+  // As DeepOpacityMap's constructor. Throws TooLarge where an array of the tree or the map is larger than shaders
   // may read in one piece.
   OpacityMap make(const MappedTree& tree, Direction along, int resolution, bool with_wood = true) const;
 
