@@ -23,7 +23,7 @@
 namespace sunfleck::apps {
 namespace {
 
-constexpr std::size_t kTrianglesPerPixel = 4;  // that llvmpipe draws in the time that a ray takes
+constexpr std::size_t kRaysPerTriangle = 4;  // that are followed in the time in which llvmpipe draws a triangle
 
 struct RenderOptions {
   SceneOptions scene;
@@ -51,8 +51,8 @@ bool visibleByRays(const RenderOptions& options, const gl::Context& context, con
     triangles += mesh.leaf_triangles.size() + mesh.wood_triangles.size();
   }
   const Camera camera = cameraOf(scene);
-  return triangles >
-         kTrianglesPerPixel * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  return kRaysPerTriangle * triangles >
+         static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
 }
 
 struct Drawn {
