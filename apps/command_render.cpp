@@ -31,6 +31,9 @@ struct RenderOptions {
   GeometryEffort effort{.light_resolution = 1024};
   std::string model = "sppg", output;
   float exposure = kExposure;
+  int samples = 4;
+  float detail = 0.f;
+  std::vector<std::string> layers;
   bool stats = false;
   std::string maps = "auto", visibility = "auto";
 };
@@ -62,7 +65,7 @@ struct Drawn {
   std::vector<ProductCost> costs;
 };
 
-Drawn drawn(const Scene& scene, Model model, const RenderOptions& options, bool quiet) {
+Drawn drawn(const Scene& scene, gl::PictureEffort picture, const RenderOptions& options, bool quiet) {
   Drawn drawn;
   const gl::Context context;
   drawn.maps_by_card = mapsByCard(options, context);
@@ -72,14 +75,19 @@ Drawn drawn(const Scene& scene, Model model, const RenderOptions& options, bool 
   if (drawn.maps_by_card) {
     maps.emplace(context);
     light_map = [&](const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution) {
-      return maps->map(mesh, along, resolution).read();
+      try {
+        return maps->map(mesh, along, resolution).read();
+      } catch (const gl::TooLarge&) {
+        if (options.maps == "gpu") throw;
+        return DeepOpacityMap(*mesh, along, resolution);
+      }
     };
   }
   StandGeometry stand(options.effort, light_map);
   const auto seconds = [start = std::chrono::steady_clock::now()] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  stand.update(scene, needsOf(model), treesInPicture(scene, cameraOf(scene)),
+  stand.update(scene, needsOf(picture.model), treesInPicture(scene, cameraOf(scene)),
                terminalProgress("opacity maps and cells", quiet));
   drawn.prepare_seconds = seconds();
   drawn.costs = stand.costs();
@@ -87,7 +95,6 @@ Drawn drawn(const Scene& scene, Model model, const RenderOptions& options, bool 
   gl::StandRenderer renderer(context);
   const gl::DrawnStand to_draw = gl::drawnStand(scene, stand, maps ? &*maps : nullptr);
   renderer.update(to_draw);
-  gl::PictureEffort picture{.model = model};
   std::optional<VisibleByRays> rays;
   if (drawn.visible_by_rays) {
     rays.emplace(to_draw);
@@ -98,15 +105,36 @@ Drawn drawn(const Scene& scene, Model model, const RenderOptions& options, bool 
   return drawn;
 }
 
+std::vector<gl::Layer> layersOf(const RenderOptions& options) {
+  if (options.layers.empty()) return {};
+  if (std::filesystem::path(options.output).extension() == ".png")
+    throw InvalidInput("--layers with " + options.output + ": must be left out, as only .exr keeps layers");
+  std::vector<gl::Layer> layers;
+  for (const gl::Layer layer : gl::kLayersBesideTotal)
+    if (std::ranges::find(options.layers, "all") != options.layers.end() ||
+        std::ranges::find(options.layers, gl::nameOf(layer)) != options.layers.end())
+      layers.push_back(layer);
+  return layers;
+}
+
+std::vector<std::string> layerNames() {
+  std::vector<std::string> names{"all"};
+  for (const gl::Layer layer : gl::kLayersBesideTotal) names.push_back(gl::nameOf(layer));
+  return names;
+}
+
 int runRender(const RenderOptions& options, const RunOptions& run) {
   requirePictureName(options.output);
+  const gl::PictureEffort effort{.model = *std::ranges::find(kModels, options.model, nameOf),
+                                 .samples = options.samples,
+                                 .piece_pixels = options.detail,
+                                 .layers = layersOf(options)};
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
-  const Model model = *std::ranges::find(kModels, options.model, nameOf);
   const Drawn result = [&] {
     try {
-      return drawn(scene, model, options, run.quiet);
+      return drawn(scene, effort, options, run.quiet);
     } catch (const gl::TooLarge& e) {
       const std::string what = e.what();
       const bool of_map = what.find("light's opacity map") != std::string::npos;
@@ -170,6 +198,21 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
           "What finds which leaf each pixel shows: raster, OpenGL; rays, which draw thousands of trees without a "
           "graphics card; or auto (default): rays where there is none and the trees are many")
       ->check(CLI::IsMember({"raster", "rays", "auto"}));
+  command
+      ->add_option("--samples", render->samples, "Frames averaged, each through other places of the pixels (default 4)")
+      ->transform(wholeNumberIn(1., 65536., "a whole number, 1 to 65536"));
+  command
+      ->add_option(
+          "--layers", render->layers,
+          "Layers that an .exr holds beside the picture, by their names or all: direct, single, multiple, sky "
+          "(parts of the picture), geometry (normal, depth), foliage (leaves before and beyond, visible sun, G), "
+          "ids (tree, triangle, kind, leaf)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(layerNames()));
+  command
+      ->add_option("--detail", render->detail,
+                   "Draw fewer leaves and twigs, enlarged to at most so many pixels each; 0: all as they are (default)")
+      ->check(numberIn(0., 1e4, "in [0, 1e4] pixels"));
   command->add_flag("--stats", render->stats, "Tell what was computed, reused and skipped, and what it took");
   command->callback([render, &options, &status] { status = runRender(*render, options); });
 }

@@ -141,7 +141,8 @@ OpacityMapFrame opacityMapFrame(const TreeMesh& mesh, Direction along, int resol
 DeepOpacityMap::DeepOpacityMap(const OpacityMapFrame& frame, Arrays arrays)
     : frame_(frame), arrays_(std::move(arrays)) {}
 
-DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, bool with_wood) {
+DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, Wood wood) {
+  const bool with_wood = wood != Wood::none;
   LentWorkspace lent;
   Workspace& workspace = *lent;
   const auto& projected = workspace.projected;
@@ -197,6 +198,7 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
   arrays_.first[pixels] = band_first.back();
   arrays_.crossings = std::make_unique_for_overwrite<Crossing[]>(band_first.back());
   if (with_wood) arrays_.wood_depth = std::make_unique_for_overwrite<float[]>(pixels);
+  if (wood == Wood::first_and_last) arrays_.last_wood_depth = std::make_unique_for_overwrite<float[]>(pixels);
   const auto firstPixel = [&](const detail::Span& span) {
     return pixelNumber(static_cast<int>(span.column), static_cast<int>(span.row));
   };
@@ -243,6 +245,15 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
         float* const depth = &arrays_.wood_depth[firstPixel(span)];
         for (std::uint32_t i = 0; i < span.length; ++i)
           depth[i] = std::min(depth[i], span.depth + static_cast<float>(i) * span.slope);
+      }
+    if (wood != Wood::first_and_last) return;
+    for (std::size_t pixel = begin; pixel < end; ++pixel)
+      arrays_.last_wood_depth[pixel] = -std::numeric_limits<float>::infinity();
+    for (const auto* of_thread : finders)
+      for (const detail::Span& span : of_thread->found[band].wood) {
+        float* const depth = &arrays_.last_wood_depth[firstPixel(span)];
+        for (std::uint32_t i = 0; i < span.length; ++i)
+          depth[i] = std::max(depth[i], span.depth + static_cast<float>(i) * span.slope);
       }
   });
 }

@@ -38,12 +38,13 @@ class DeepOpacityMap {
   struct Arrays {
     std::unique_ptr<std::uint32_t[]> first;
     std::unique_ptr<Crossing[]> crossings;
-    std::unique_ptr<float[]> wood_depth;  // none in a map without wood
+    std::unique_ptr<float[]> wood_depth, last_wood_depth;  // none where they were not looked for
   };
+  // Which wood is looked for on each line.
+  enum class Wood { none, first, first_and_last };
 
-  // `resolution` >= 1: pixels along the longer side. Without `with_wood` the wood is not looked for, which saves half
-  // of the work. Works in parallel.
-  DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, bool with_wood = true);
+  // `resolution` >= 1: pixels along the longer side. Without wood half of the work is saved. Works in parallel.
+  DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, Wood wood = Wood::first);
   // A map that was made elsewhere, as on a graphics card (D14).
   DeepOpacityMap(const OpacityMapFrame& frame, Arrays arrays);
 
@@ -60,9 +61,9 @@ class DeepOpacityMap {
   std::span<const Crossing> crossings() const { return {arrays_.crossings.get(), first().back()}; }
   std::span<const Crossing> crossings(int x, int y) const;
   // Depth of the first wood in each pixel [m]; infinity where there is none; empty in a map made without wood.
-  std::span<const float> woodDepth() const {
-    return {arrays_.wood_depth.get(), arrays_.wood_depth ? pixelNumber(0, frame_.size.y) : 0};
-  }
+  std::span<const float> woodDepth() const { return ofPixels(arrays_.wood_depth); }
+  // Depth of the last wood in each pixel [m]; -infinity where there is none; empty unless asked for.
+  std::span<const float> lastWoodDepth() const { return ofPixels(arrays_.last_wood_depth); }
 
   // (right, up, depth) of a point in the map [m].
   glm::vec3 inMap(glm::vec3 point) const;
@@ -81,6 +82,10 @@ class DeepOpacityMap {
  private:
   std::size_t pixelNumber(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.size.x) + static_cast<std::size_t>(x);
+  }
+
+  std::span<const float> ofPixels(const std::unique_ptr<float[]>& values) const {
+    return {values.get(), values ? pixelNumber(0, frame_.size.y) : 0};
   }
 
   OpacityMapFrame frame_;

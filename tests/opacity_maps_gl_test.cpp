@@ -62,7 +62,7 @@ TEST(D14_OpacityMapOnTheGpu, IsTheProcessorsToTheBit) {
 }
 
 // (D14) Check that a leaf whose edges pass exactly through centres of pixels, and a trunk behind it, lie in the pixels
-// that the processor says, and that a map without wood has none.
+// that the processor says.
 TEST(D14_OpacityMapOnTheGpu, DecidesCentresOnEdgesAlike) {
   TreeMesh mesh;
   const auto square = [&](std::vector<glm::uvec3>& triangles, glm::vec2 low, glm::vec2 high, float z) {
@@ -84,7 +84,6 @@ TEST(D14_OpacityMapOnTheGpu, DecidesCentresOnEdgesAlike) {
     EXPECT_EQ(std::ranges::count(made.woodDepth(), 2.f * z), 6);
     const Differences found = differences(made, DeepOpacityMap(mesh, along, 8));
     EXPECT_EQ(found.pixels + found.depths, 0u);
-    EXPECT_TRUE(maker.make(tree, along, 8, false).read().woodDepth().empty());
   }
 }
 

@@ -93,11 +93,11 @@ OpacityMapMaker::OpacityMapMaker(const Context& context)
       fill_({shaderOf(Stage::compute, "render/gl/opacity_fill.comp")}),
       sort_({shaderOf(Stage::compute, "render/gl/opacity_sort.comp")}) {}
 
-OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int resolution, bool with_wood) const {
+OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int resolution) const {
   const OpacityMapFrame frame = opacityMapFrame(*tree.mesh_, along, resolution);
   const std::size_t pixels = static_cast<std::size_t>(frame.size.x) * static_cast<std::size_t>(frame.size.y);
   const std::size_t leaf_triangles = tree.mesh_->leaf_triangles.size();
-  const std::size_t wood_triangles = with_wood ? tree.mesh_->wood_triangles.size() : 0;
+  const std::size_t wood_triangles = tree.mesh_->wood_triangles.size();
   for (const Buffer* buffer : {&tree.positions_, &tree.triangles_})
     requireRoom(static_cast<double>(buffer->bytes()), "the tree");
   requireRoom(12. * static_cast<double>(pixels + 1), "the light's opacity map");
@@ -152,7 +152,7 @@ OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int re
   glUniform1ui(0, static_cast<GLuint>(pixels));
   dispatch(pixels);
   context_->requireNoError("making an opacity map");
-  return {.frame = frame, .lines = std::move(lines), .crossings = std::move(crossings), .with_wood = with_wood};
+  return {.frame = frame, .lines = std::move(lines), .crossings = std::move(crossings)};
 }
 
 DeepOpacityMap OpacityMap::read() const {
@@ -160,10 +160,11 @@ DeepOpacityMap OpacityMap::read() const {
   const std::size_t pixels = of_pixels.size(), count = crossings.bytes() / sizeof(Crossing);
   DeepOpacityMap::Arrays arrays{.first = std::make_unique_for_overwrite<std::uint32_t[]>(pixels + 1),
                                 .crossings = std::make_unique_for_overwrite<Crossing[]>(count),
-                                .wood_depth = with_wood ? std::make_unique_for_overwrite<float[]>(pixels) : nullptr};
+                                .wood_depth = std::make_unique_for_overwrite<float[]>(pixels),
+                                .last_wood_depth = nullptr};
   for (std::size_t i = 0; i < pixels; ++i) {
     arrays.first[i] = of_pixels[i].x;
-    if (with_wood) arrays.wood_depth[i] = std::bit_cast<float>(of_pixels[i].z);
+    arrays.wood_depth[i] = std::bit_cast<float>(of_pixels[i].z);
   }
   arrays.first[pixels] = static_cast<std::uint32_t>(count);
   crossings.read(std::span(arrays.crossings.get(), count));

@@ -17,7 +17,6 @@ struct OpacityMap {
   OpacityMapFrame frame;
   Buffer lines;      // of each pixel: its first crossing, the end of its crossings, the bits of the first wood's depth
   Buffer crossings;  // the bits of the depth, the leaf
-  bool with_wood;
 
   DeepOpacityMap read() const;  // the same in the program's memory
 };
@@ -44,7 +43,7 @@ class OpacityMapMaker {
 
   // As DeepOpacityMap's constructor. Throws TooLarge where an array of the tree or the map is larger than shaders
   // may read in one piece.
-  OpacityMap make(const MappedTree& tree, Direction along, int resolution, bool with_wood = true) const;
+  OpacityMap make(const MappedTree& tree, Direction along, int resolution) const;
 
  private:
   const Context* context_;

@@ -8,7 +8,7 @@
 #include "render/gl/shading.glsl"
 
 layout(binding = 6) uniform usampler2D visible;
-layout(binding = 7) uniform samplerBuffer triangles;  // two rows for each: see tree_levels.hpp
+layout(binding = 7) uniform usamplerBuffer triangles;  // two texels of bits for each: see tree_levels.hpp
 layout(binding = 8) uniform sampler2D sky_radiance;   // rows from the zenith down [1/sr]
 
 layout(location = 0) out vec4 total;  // rgb: radiance; a: coverage by trees and ground
@@ -21,6 +21,8 @@ layout(location = 5) out vec4 geometry;  // xyz: normal; w: distance along the m
 layout(location = 6) out vec4 foliage_of_light;  // n+, n-, visible, G
 layout(location = 7) out uvec4 ids;              // drawn tree, triangle, kind, leaf
 #endif
+
+const uint kThinWood = kNoLeaf - 1u;
 
 struct Sight {
   vec3 from;
@@ -46,9 +48,10 @@ void addLight(Shaded shaded, uint light, Foliage foliage, float compensation) {
 void shadeTree(uvec2 id, Sight look) {
   vec3 stands_here = drawn[id.x].position;
   uint tree = id.x % counts.y;
-  uint kind = trees[tree].kind.x;
+  uint kind = kindOf(tree);
   int triangle = 2 * int(kind_frames[kind].cell_count.w + id.y);
-  vec4 plane = texelFetch(triangles, triangle), of_leaf = texelFetch(triangles, triangle + 1);
+  vec4 plane = uintBitsToFloat(texelFetch(triangles, triangle));
+  uvec4 of_piece = texelFetch(triangles, triangle + 1);
   float enlargement = length(plane.xyz);
   vec3 normal = plane.xyz / enlargement;
   vec3 from = look.from - stands_here;
@@ -56,14 +59,16 @@ void shadeTree(uvec2 id, Sight look) {
   vec3 place = from + away * look.along;
   if (dot(normal, look.along) > 0.0) normal = -normal;
 
-  uint leaf = floatBitsToUint(of_leaf.w);
-  bool wood = leaf == kNoLeaf;
-  // The light is that of the true leaf, however enlarged it is drawn.
-  vec3 lit = wood ? place : of_leaf.xyz + (place - of_leaf.xyz) / enlargement;
+  bool wood = of_piece.w >= kThinWood;
+  uint leaf = wood ? kNoLeaf : of_piece.w;
+  vec3 middle = uintBitsToFloat(of_piece.xyz);
+  float error = of_piece.w == kNoLeaf ? middle.x : 0.0;
+  // The light is that of the true leaf or twig, however enlarged it is drawn.
+  vec3 lit = of_piece.w == kNoLeaf ? place : middle + (place - middle) / enlargement;
   Surface surface = wood ? woodSurface(kind, tree, normal, -look.along) : leafSurface(kind, tree, leaf, normal, -look.along);
-  for (uint light = 0u; light < counts.x; ++light) {
+  for (uint light = 0u; light < LIGHTS; ++light) {
     float bias = woodBias(wood ? dot(normal, light_frames[light].travel.xyz) : 1.0);
-    Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, bias);
+    Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, vec2(bias, error));
     // A leaf is itself a part of the slab's thickness.
     float thickness = foliage.before + foliage.beyond + (wood ? 0.0 : 1.0);
     float compensation = NEEDS_COMPENSATION ? compensationAt(lit, tree, light) : 1.0;
@@ -90,7 +95,7 @@ LastLeaf lastLeaf(uint light, vec3 here) {
   uvec2 casters = castersAt(light, here);
   for (uint c = casters.x; c < casters.y; ++c) {
     Caster caster = casterAt(c);
-    MapFrame map = map_frames[4u * trees[caster.tree].kind.x + light];
+    MapFrame map = map_frames[4u * kindOf(caster.tree) + light];
     vec3 in_tree = inLight(light, here - caster.position) + map.origin.xyz;
     Nearest near = nearestPixels(map, in_tree);
     ivec2 pixel = near.pixel + ivec2(greaterThan(near.part, vec2(0.5)));
@@ -114,12 +119,12 @@ float shadeGround(Sight look) {
   if (from_centre >= 1.0 || (eye.w > 0.0 && away <= 0.0)) return 0.0;
   vec3 here = place;
   if (period.x > 0.0) here.xy -= floor((here.xy - period.zw) / period.xy) * period.xy;
-  for (uint light = 0u; light < counts.x; ++light) {
-    Foliage foliage = foliageAt(light, here, vec3(0.0), kNone, kNoLeaf, 1.0);
+  for (uint light = 0u; light < LIGHTS; ++light) {
+    Foliage foliage = foliageAt(light, here, vec3(0.0), kNone, kNoLeaf, vec2(1.0, 0.0));
     LastLeaf last = lastLeaf(light, here);
     float compensation =
         NEEDS_COMPENSATION && last.tree != kNone ? compensationAt(last.place, last.tree, light) : 1.0;
-    uint kind = last.tree == kNone ? 0u : trees[last.tree].kind.x;
+    uint kind = last.tree == kNone ? 0u : kindOf(last.tree);
     Surface surface = opaqueSurface(kind, kNone, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), -look.along);
     addLight(shadeByLight(surface, foliage, foliage.before + foliage.beyond, compensation, light), light, foliage,
              compensation);

@@ -16,7 +16,7 @@ namespace sunfleck::gl {
 struct PictureEffort {
   Model model = Model::sppg;
   int samples = 4;              // for each pixel, > 0
-  float pixels_per_leaf = 0.f;  // see View
+  float piece_pixels = 0.f;  // see View
   std::vector<Layer> layers;    // beside the total
   // Finds what is seen in a view into a target of that size, as StandRenderer::draw() is told; none: it is drawn.
   std::function<std::vector<glm::uvec2>(const View& view, const glm::ivec2& size)> visible{};

@@ -68,17 +68,24 @@ struct StandRenderer::Programs {
   Program visible{shaderOf(Stage::vertex, "render/gl/visible.vert"),
                   shaderOf(Stage::fragment, "render/gl/visible.frag")};
   ObjectName<destroyArray> no_array{createdArray()};
-  std::map<std::pair<Model, bool>, Program> shading;
+  // What a shading program is made for.
+  struct Purpose {
+    Model model;
+    bool layers, one_kind, one_light;
+    auto operator<=>(const Purpose&) const = default;
+  };
+  std::map<Purpose, Program> shading;
   std::map<Model, ShadingBuffers> buffers;  // of the stand as it is
 
-  const Program& shadingBy(Model model, bool layers) {
-    const auto key = std::pair(model, layers);
-    auto found = shading.find(key);
+  const Program& shadingFor(const Purpose& purpose) {
+    auto found = shading.find(purpose);
     if (found == shading.end()) {
-      Shader shader = shadingShader(Stage::fragment, "render/gl/shade.frag", model);
-      define(shader, "NEEDS_COMPENSATION", needsCompensation(model) ? "true" : "false");
-      if (layers) define(shader, "LAYERS", "1");
-      found = shading.emplace(key, Program({shaderOf(Stage::vertex, "render/gl/screen.vert"), shader})).first;
+      Shader shader = shadingShader(Stage::fragment, "render/gl/shade.frag", purpose.model);
+      define(shader, "NEEDS_COMPENSATION", needsCompensation(purpose.model) ? "true" : "false");
+      if (purpose.layers) define(shader, "LAYERS", "1");
+      if (purpose.one_kind) define(shader, "ONE_KIND", "1");
+      if (purpose.one_light) define(shader, "LIGHTS", "1u");
+      found = shading.emplace(purpose, Program({shaderOf(Stage::vertex, "render/gl/screen.vert"), shader})).first;
     }
     return found->second;
   }
@@ -155,13 +162,41 @@ FrameCost StandRenderer::draw(const View& view, FrameTarget& target, std::span<c
   return shade(view, target, {});
 }
 
+std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const FrameTarget& target) const {
+  const glm::vec2 place = glm::vec2(view.low + pixel) + 0.5f + view.offset;
+  const Sight look = sightThrough(view.camera, {place.x, static_cast<float>(view.camera.height) - place.y});
+  const glm::uvec2 id = target.visibleAt(pixel);
+  if (id.x >= kGround) {
+    const GroundDisc& ground = data_.ground();
+    const float away = (ground.centre.z - look.from.z) / look.along.z;
+    const glm::vec3 there = look.from + away * look.along;
+    const bool seen = data_.frame().ground_albedo.w > 0.f && look.along.z < 0.f &&
+                      (away > 0.f || !view.camera.perspective()) &&
+                      glm::distance(there, ground.centre) < ground.radius;
+    return seen ? std::optional<Pick>({.tree = {}, .leaf = {}, .place = there}) : std::nullopt;
+  }
+  const StandData::Seen seen = data_.seen(id.x);
+  const TriangleData& triangle = data_.kinds()[seen.kind].levels.triangles[id.y];
+  const glm::vec3 normal = glm::normalize(glm::vec3(triangle.plane));
+  const float away =
+      (triangle.plane.w - glm::dot(normal, look.from - seen.position)) / glm::dot(normal, look.along);
+  Pick pick{.tree = seen.tree, .leaf = {}, .place = look.from + away * look.along};
+  if (triangle.leaf < TriangleData::kThinWood) pick.leaf = triangle.leaf;
+  return pick;
+}
+
 FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost cost) {
   cost.shading_seconds = secondsOf(timed_, [&] {
     target.beginShading(view.accumulate);
     data_.bind();
     glBindTextureUnit(6, target.visible());
     programs_->buffersOf(view.model, data_).bind();
-    programs_->shadingBy(view.model, target.hasLayers()).use();
+    programs_
+        ->shadingFor({.model = view.model,
+                      .layers = target.hasLayers(),
+                      .one_kind = data_.kinds().size() == 1,
+                      .one_light = data_.lights().size() == 1})
+        .use();
     glBindVertexArray(programs_->no_array.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
   });
