@@ -12,22 +12,11 @@ namespace {
 
 using namespace detail;
 
-constexpr float kGroundRadii = 3.f;     // of the widest crown, from a tree's axis to the rim of the ground
-constexpr float kEmptyGround = 10.f;    // radius of the ground where nothing stands [m]
+constexpr float kGroundRadii = 3.f;   // of the widest crown, from a tree's axis to the rim of the ground
+constexpr float kEmptyGround = 10.f;  // radius of the ground where nothing stands [m]
 
 bool anyAbove(const glm::vec3& values, float bound) {
   return values.x > bound || values.y > bound || values.z > bound;
-}
-
-// Displacements of the copies that are drawn or may stand in the light, the stand itself first [m].
-std::vector<glm::vec3> copies(const DrawnStand& stand, glm::ivec2 around) {
-  std::vector<glm::vec3> shifts{glm::vec3(0.f)};
-  if (!stand.period) return shifts;
-  for (int y = -around.y; y <= around.y; ++y)
-    for (int x = -around.x; x <= around.x; ++x)
-      if (x != 0 || y != 0)
-        shifts.push_back({static_cast<float>(x) * stand.period->x, static_cast<float>(y) * stand.period->y, 0.f});
-  return shifts;
 }
 
 Bounds moved(const Bounds& box, const glm::vec3& by) {
@@ -90,8 +79,8 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
     kinds_[i].mesh = mesh;
     kinds_[i].levels = mesh ? treeLevels(*mesh) : TreeLevels{};
     kinds_[i].buffers.emplace(kinds_[i].levels);
-    sent += kinds_[i].levels.vertices.size() * sizeof(glm::vec3) +
-            kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
+    sent +=
+        kinds_[i].levels.vertices.size() * sizeof(glm::vec3) + kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
   }
   if (sent > 0) {
     first_triangle_.clear();
@@ -147,7 +136,7 @@ std::size_t StandData::updateTrees(const DrawnStand& stand) {
   for (Kind& kind : kinds_) kind.drawn.clear();
   box_ = {};
   seen_.clear();
-  for (const glm::vec3& shift : copies(stand, glm::ivec2(1)))
+  for (const glm::vec3& shift : copies(stand, glm::ivec2(kDrawnAround)))
     for (std::uint32_t number = 0; number < stand.trees.size(); ++number) {
       const DrawnTree& tree = stand.trees[number];
       seen_.push_back({.tree = number, .kind = tree.kind, .position = tree.position + shift});
