@@ -1,12 +1,21 @@
 #include "apps/pictures.hpp"
 
+#include "core/require.hpp"
 #include "render/gl/tree_picture.hpp"
 
 namespace sunfleck::apps {
 
 Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress) {
-  gl::ShadingData data{.sun = &stand.light(), .cells = &stand.cells()};
-  for (const std::vector<float>& of_tree : stand.compensation()) data.compensation.emplace_back(of_tree);
+  requireModelled(scene);
+  gl::ShadingData data{.sun = &stand.light(0, 0), .cells = &stand.cells(0)};
+  std::vector<std::vector<float>> none(scene.stand.trees.size());
+  for (std::size_t tree = 0; tree < none.size(); ++tree) {
+    data.compensation.push_back(stand.compensation(tree, 0));
+    if (data.compensation.back().empty()) {  // not in the picture
+      none[tree].resize(data.cells->count());
+      data.compensation.back() = none[tree];
+    }
+  }
   return gl::treePicture(scene, data, model, progress);
 }
 
@@ -16,6 +25,7 @@ void showGround(Scene& scene) {
 
 PixelRays pixelRays(const Scene& scene) {
   const Camera camera = cameraOf(scene);
+  require(!camera.perspective(), "camera field of view [rad]", camera.field_of_view, "0: Monte Carlo is orthographic");
   const Axes view = viewAxes(camera);
   const Bounds box = bounds(scene);
   // Far enough behind the target to see all in front, and the ground below, without losing digits.

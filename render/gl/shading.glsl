@@ -6,7 +6,7 @@
 #include "render/shading/surface_types.glsl"
 
 layout(std140, binding = 1) uniform Surfaces {
-  KindOptics kinds[kMostKinds];
+  KindOptics kinds[kMostSurfaceKinds];
   ShadingLight lights[kMostShadingLights];
 };
 #define MODEL_CONSTANTS(Type) \

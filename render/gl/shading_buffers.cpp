@@ -13,7 +13,7 @@ using namespace shading;
 
 // The uniform block of shading.glsl.
 struct SurfacesData {
-  std::array<KindOptics, kMostKinds> kinds{};
+  std::array<KindOptics, kMostSurfaceKinds> kinds{};
   std::array<ShadingLight, kMostShadingLights> lights{};
 };
 

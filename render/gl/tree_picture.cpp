@@ -23,6 +23,8 @@ void requireDrawable(const Scene& scene, const Camera& camera) {
     require(side > 0 && side <= kLongestSide, "picture size [pixel]", side, "1 .. " + std::to_string(kLongestSide));
   require(std::isfinite(camera.half_width) && camera.half_width > 0.f, "camera half width [m]", camera.half_width,
           "a finite number above 0");
+  require(!camera.perspective(), "camera field of view [rad]", camera.field_of_view,
+          "0: models' pictures are orthographic");
   for (const Placement& tree : scene.stand.trees)
     require(tree.rotation == 0.f, "tree rotation [rad]", tree.rotation,
             "0: pictures share one opacity map among all trees, which a rotated tree does not fit");
@@ -30,7 +32,7 @@ void requireDrawable(const Scene& scene, const Camera& camera) {
 
 // These are the program's own mistakes, not the user's.
 void requireFitting(const Scene& scene, const ShadingData& data, Model model) {
-  if (!data.sun || glm::length(data.sun->along() - scene.sun()) > kSameDirection)
+  if (!data.sun || glm::length(data.sun->along() - scene.sun().light()) > kSameDirection)
     throw std::invalid_argument("treePicture: the opacity map is not along the scene's sun");
   if (!needsCompensation(model)) return;
   bool fits = data.cells && data.compensation.size() == scene.stand.trees.size();

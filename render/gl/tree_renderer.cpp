@@ -133,10 +133,14 @@ CellBlocks cellBlocks(const CompensationCells& cells) {
   return blocks;
 }
 
+StandLight lightOf(const Sun& sun) {
+  return {.along = sun.light(), .irradiance = sun.irradiance};
+}
+
 // What is a model's own.
 struct ModelShading {
   ModelShading(Model model, const Scene& scene)
-      : buffers(sunfleck::shading::shadingData(model, scene)),
+      : buffers(sunfleck::shading::shadingData(model, scene.kinds, std::array{lightOf(scene.sun())})),
         tree_program({shaderOf(Stage::vertex, "render/gl/tree.vert"),
                       shadingShader(Stage::fragment, "render/gl/tree.frag", model)}),
         ground_program({shaderOf(Stage::vertex, "render/gl/ground.vert"),

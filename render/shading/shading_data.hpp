@@ -8,6 +8,7 @@
 
 #include "render/model.hpp"
 #include "render/scene.hpp"
+#include "render/stand_geometry.hpp"
 
 // The C++ face of the shading text's types (surface_types.glsl).
 namespace sunfleck::shading {
@@ -17,6 +18,8 @@ using glm::vec4;
 using uint = std::uint32_t;
 #include "render/shading/surface_types.glsl"
 
+static_assert(kMostSurfaceKinds >= kMostKinds && kMostShadingLights >= kMostSuns);
+
 // What shading reads beside the fragments: plain data, the same for graphics card and processor.
 struct ShadingData {
   std::vector<KindOptics> kinds;
@@ -24,10 +27,9 @@ struct ShadingData {
   std::vector<float> constants;  // the model's own (shading_model.hpp)
 };
 
-// The scene's suns.
-std::vector<ShadingLight> shadingLights(const Scene& scene);
-
-// Throws InvalidInput on more than kMostKinds kinds.
-ShadingData shadingData(Model model, const Scene& scene);
+// Kinds and lights as the stand numbers them.
+ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand);
+// Of the scene's kinds, at most kMostSurfaceKinds, in lights as the caller numbers them, at most kMostShadingLights.
+ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights);
 
 }  // namespace sunfleck::shading

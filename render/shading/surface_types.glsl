@@ -1,6 +1,6 @@
 // What shading reads and gives. Like all of this folder's text, it is C++ (with GLM's vectors) and GLSL.
 
-const uint kMostKinds = 64u;       // of trees in a scene
+const uint kMostSurfaceKinds = 64u;       // of trees in a scene
 const uint kMostShadingLights = 4u;
 
 // What a kind of tree does to light, per band [1].
