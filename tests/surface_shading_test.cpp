@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/buffer.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/program.hpp"
@@ -123,7 +124,7 @@ std::vector<TreeKind> twoKinds() {
 ShadingData twoKindsTwoSuns(Model model) {
   const std::array lights{StandLight{.along = sunlight(0.5f, 1.f), .irradiance = {1.f, 0.8f, 0.3f}},
                           StandLight{.along = sunlight(1.4f, 3.f), .irradiance = {0.1f, 2.f, 0.f}}};
-  return shadingData(model, twoKinds(), lights);
+  return shadingData(model, twoKinds(), lights, exactPowerTable);
 }
 
 // 8,192 fragments at random and in corners: no foliage, foliage without end, G of 0 and 1, surfaces along the light.

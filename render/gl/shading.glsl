@@ -3,6 +3,7 @@
 // part of the program: what changes with the model changes nothing else.
 #define STREAMS 2
 #include "spp/stream_formulas.glsl"
+#include "spp/power_table.glsl"
 #include "render/shading/surface_types.glsl"
 
 layout(std140, binding = 1) uniform Surfaces {

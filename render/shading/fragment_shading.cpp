@@ -11,6 +11,8 @@ namespace sunfleck::shading {
 using glm::dot;
 using glm::max;
 using glm::min;
+using spp::kTableDepths, spp::kTableThicknesses;
+using spp::TablePlace, spp::tablePlace, spp::tableValue;
 
 // The text shared with GLSL as members of a class: its functions read `kinds`, `lights` and model_constants.
 class FragmentShading::Text : public spp::StreamFormulas<float, 2> {
@@ -58,6 +60,12 @@ struct FragmentShading::Texts {
 #include "render/shading/shade.glsl"
   };
 
+  struct Tables final : Text {
+    using Text::Text;
+#include "render/shading/shade.glsl"
+#include "render/shading/tables.glsl"
+  };
+
   static std::unique_ptr<Text> of(Model model, const ShadingData& data) {
     switch (model) {
       case Model::ss:
@@ -68,6 +76,9 @@ struct FragmentShading::Texts {
         return std::make_unique<Sppg>(data);
       case Model::nstreamg:
         return std::make_unique<NStreamG>(data);
+      case Model::sppr:
+      case Model::pp:
+        return std::make_unique<Tables>(data);
     }
     return nullptr;
   }

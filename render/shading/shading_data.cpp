@@ -2,13 +2,12 @@
 
 #include <cassert>
 
-#include "render/shading/shading_model.hpp"
-
 namespace sunfleck::shading {
 
-ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights) {
+ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights,
+                        const ExactPowers& exact) {
   assert(kinds.size() <= kMostSurfaceKinds && lights.size() <= kMostShadingLights);
-  ShadingData data{.kinds = {}, .lights = {}, .constants = shadingModel(model).constants(kinds)};
+  ShadingData data{.kinds = {}, .lights = {}, .constants = shadingModel(model).constants(kinds, exact)};
   for (const TreeKind& kind : kinds) {
     KindOptics& optics = data.kinds.emplace_back();
     for (int band = 0; band < kBands; ++band) {
@@ -23,10 +22,10 @@ ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<
   return data;
 }
 
-ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand) {
+ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand, const ExactPowers& exact) {
   std::vector<TreeKind> kinds;
   for (const StandKind& kind : stand.kinds()) kinds.push_back(scene.kinds[kind.kind]);
-  return shadingData(model, kinds, stand.lights());
+  return shadingData(model, kinds, stand.lights(), exact);
 }
 
 }  // namespace sunfleck::shading

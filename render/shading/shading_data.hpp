@@ -8,6 +8,7 @@
 
 #include "render/model.hpp"
 #include "render/scene.hpp"
+#include "render/shading/shading_model.hpp"
 #include "render/stand_geometry.hpp"
 
 // The C++ face of the shading text's types (surface_types.glsl).
@@ -28,8 +29,10 @@ struct ShadingData {
 };
 
 // Kinds and lights as the stand numbers them.
-ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand);
+//   exact  for models of the exact solution; without it they throw std::invalid_argument
+ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand, const ExactPowers& exact = {});
 // Of the scene's kinds, at most kMostSurfaceKinds, in lights as the caller numbers them, at most kMostShadingLights.
-ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights);
+ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights,
+                        const ExactPowers& exact = {});
 
 }  // namespace sunfleck::shading
