@@ -8,6 +8,7 @@
 #include "render/model.hpp"
 #include "render/scene.hpp"
 #include "render/stand_geometry.hpp"
+#include "spp/power_table.hpp"
 
 namespace sunfleck {
 
@@ -24,7 +25,9 @@ LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const 
 
 // (R7) Irradiance of each leaf of the prototype, both sides together per one-sided area, for sun irradiance 1 on a
 // plane facing the sun: the mean over the stand's trees [1].
-std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, const LeafOptics& optics);
+//   exact  table of the exact solution, for the models that need it; without it they throw std::invalid_argument
+std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, const LeafOptics& optics,
+                                  const spp::PowerTableOf& exact = {});
 
 // Depth and thickness of each leaf, the mean over the stand's trees.
 LeafDepths meanDepths(const LeafGeometry& geometry);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/leaf_optics.hpp"
@@ -23,6 +24,9 @@ std::vector<double> tableDepths(double thickness);
 
 // Leaves of all directions alike, as the models have them, lit along the slab's normal.
 BeamInMedium sphericalLeaves(const LeafOptics& optics);
+
+// A table for a kind of leaves: refinedPowerTable, or of the exact solution that of render/compare/exact_powers.hpp.
+using PowerTableOf = std::function<PowerTable(const LeafOptics&)>;
 
 // (S15) Powers of SPP refined: those of the radiance that the light scattered by SPP's field makes (S10).
 PowerTable refinedPowerTable(const LeafOptics& optics);

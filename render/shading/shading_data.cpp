@@ -5,7 +5,7 @@
 namespace sunfleck::shading {
 
 ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights,
-                        const ExactPowers& exact) {
+                        const spp::PowerTableOf& exact) {
   assert(kinds.size() <= kMostSurfaceKinds && lights.size() <= kMostShadingLights);
   ShadingData data{.kinds = {}, .lights = {}, .constants = shadingModel(model).constants(kinds, exact)};
   for (const TreeKind& kind : kinds) {
@@ -22,7 +22,7 @@ ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<
   return data;
 }
 
-ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand, const ExactPowers& exact) {
+ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand, const spp::PowerTableOf& exact) {
   std::vector<TreeKind> kinds;
   for (const StandKind& kind : stand.kinds()) kinds.push_back(scene.kinds[kind.kind]);
   return shadingData(model, kinds, stand.lights(), exact);

@@ -30,9 +30,10 @@ struct ShadingData {
 
 // Kinds and lights as the stand numbers them.
 //   exact  for models of the exact solution; without it they throw std::invalid_argument
-ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand, const ExactPowers& exact = {});
+ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand,
+                        const spp::PowerTableOf& exact = {});
 // Of the scene's kinds, at most kMostSurfaceKinds, in lights as the caller numbers them, at most kMostShadingLights.
 ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights,
-                        const ExactPowers& exact = {});
+                        const spp::PowerTableOf& exact = {});
 
 }  // namespace sunfleck::shading

@@ -22,11 +22,11 @@ std::vector<float> ofLeaves(std::span<const TreeKind> kinds, const Append& appen
   return numbers;
 }
 
-std::vector<float> none(std::span<const TreeKind>, const ExactPowers&) {
+std::vector<float> none(std::span<const TreeKind>, const spp::PowerTableOf&) {
   return {};
 }
 
-std::vector<float> sppNumbers(std::span<const TreeKind> kinds, const ExactPowers&) {
+std::vector<float> sppNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
   return ofLeaves(kinds, [](const LeafOptics& leaf, std::vector<float>& numbers) {
     numbers.push_back(leaf.albedo());
     numbers.push_back(spp::sphericalLeafForwardShare(leaf.reflectance, leaf.transmittance));
@@ -36,7 +36,7 @@ std::vector<float> sppNumbers(std::span<const TreeKind> kinds, const ExactPowers
 constexpr int kStreams = 2;  // STREAMS of the text
 
 // Leaves of all directions alike, lit along the slab's normal.
-std::vector<float> streamNumbers(std::span<const TreeKind> kinds, const ExactPowers&) {
+std::vector<float> streamNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
   return ofLeaves(kinds, [](const LeafOptics& leaf, std::vector<float>& numbers) {
     const spp::StreamConstants constants = spp::nStreamConstants(spp::sphericalLeaves(leaf), kStreams, 1);
     numbers.push_back(static_cast<float>(constants.depth_scale / constants.beam_projection));
@@ -50,7 +50,7 @@ std::vector<float> streamNumbers(std::span<const TreeKind> kinds, const ExactPow
 }
 
 // The nodes' powers band by band within a node. Bands that are alike share their table.
-std::vector<float> tableNumbers(std::span<const TreeKind> kinds, const ExactPowers& table_of) {
+std::vector<float> tableNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf& table_of) {
   std::vector<float> numbers;
   for (const TreeKind& kind : kinds) {
     std::array<spp::PowerTable, kBands> tables;
@@ -63,10 +63,10 @@ std::vector<float> tableNumbers(std::span<const TreeKind> kinds, const ExactPowe
   }
   return numbers;
 }
-std::vector<float> refinedNumbers(std::span<const TreeKind> kinds, const ExactPowers&) {
+std::vector<float> refinedNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
   return tableNumbers(kinds, spp::refinedPowerTable);
 }
-std::vector<float> exactNumbers(std::span<const TreeKind> kinds, const ExactPowers& exact) {
+std::vector<float> exactNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf& exact) {
   if (!exact) throw std::invalid_argument("the model pp needs the exact solution");
   return tableNumbers(kinds, exact);
 }

@@ -11,16 +11,13 @@
 
 namespace sunfleck::shading {
 
-// The exact solution for a kind of leaves: render/compare/exact_powers.hpp has it.
-using ExactPowers = std::function<spp::PowerTable(const LeafOptics&)>;
-
 // (R27) A model as surfaces are shaded by it. One more is one more text and one more entry.
 struct ShadingModel {
   Model model;
   std::string_view text;  // file that defines scatteredLight()
   // What the text reads as model_constants, for all kinds: one number after the other, as its struct holds them.
   // Throws std::invalid_argument without `exact` where it is needed.
-  std::vector<float> (*constants)(std::span<const TreeKind> kinds, const ExactPowers& exact);
+  std::vector<float> (*constants)(std::span<const TreeKind> kinds, const spp::PowerTableOf& exact);
 };
 
 const ShadingModel& shadingModel(Model model);
