@@ -15,10 +15,11 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Where tablePlace() finds a node of a slab.
 double nodeDepth(int node, double thickness) {
-  const double t = static_cast<double>(node) / (kTableDepths - 1);
-  if (thickness == kInfinite) return t < 0.5 ? 8. * t / (1. - 2. * t) : kInfinite;  // B = 8
+  const double part = static_cast<double>(node) / (kTableDepths - 1), rest = 1. - part;
+  const double t = part * part / (part * part + rest * rest);  // A^2 / (A^2 + B^2)
+  if (thickness == kInfinite) return t < 0.5 ? 8. * t / (1. - 2. * t) : kInfinite;  // B^2 = 8
   if (t > 0.5) return thickness - nodeDepth(kTableDepths - 1 - node, thickness);
-  // A (1 - t) = B t is q z^2 - p z + t w = 0.
+  // A^2 (1 - t) = B^2 t is q z^2 - p z + t w = 0.
   const double q = 0.125 * (1. - 2. * t), p = 1. + q * thickness;
   return 2. * t * thickness / (p + std::sqrt(p * p - 4. * q * t * thickness));
 }

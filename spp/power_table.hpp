@@ -9,6 +9,14 @@
 
 namespace sunfleck::spp {
 
+#define SHARED_FN inline
+#define SHARED_IN(Type) const Type&
+#define SHARED_CONSTANT inline constexpr
+#include "spp/power_table.glsl"
+#undef SHARED_FN
+#undef SHARED_IN
+#undef SHARED_CONSTANT
+
 // (R27) Diffuse P+ and P- [F] over depth and thickness, in crossings, of slabs of one kind of leaves under a beam
 // across them: row after row of one thickness, the nodes of power_table.glsl.
 struct PowerTable {

@@ -4,12 +4,14 @@
 #define STREAMS 2
 #include "spp/stream_formulas.glsl"
 #include "spp/power_table.glsl"
+#include "scattering/gloss_formulas.glsl"
 #include "render/shading/surface_types.glsl"
 
 layout(std140, binding = 1) uniform Surfaces {
   KindOptics kinds[kMostSurfaceKinds];
   ShadingLight lights[kMostShadingLights];
 };
+layout(std430, binding = 14) readonly buffer GlossTables { float gloss_tables[]; };
 #define MODEL_CONSTANTS(Type) \
   layout(std430, binding = 15) readonly buffer ModelConstants { Type model_constants[]; }
 

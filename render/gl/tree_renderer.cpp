@@ -140,7 +140,11 @@ StandLight lightOf(const Sun& sun) {
 // What is a model's own.
 struct ModelShading {
   ModelShading(Model model, const Scene& scene)
-      : buffers(sunfleck::shading::shadingData(model, scene.kinds, std::array{lightOf(scene.sun())})),
+      : buffers([&] {
+          sunfleck::shading::ShadingData data;
+          update(data, model, scene.kinds, std::array{lightOf(scene.sun())});
+          return data;
+        }()),
         tree_program({shaderOf(Stage::vertex, "render/gl/tree.vert"),
                       shadingShader(Stage::fragment, "render/gl/tree.frag", model)}),
         ground_program({shaderOf(Stage::vertex, "render/gl/ground.vert"),
