@@ -34,12 +34,17 @@ spp::PowerTableOf uniformPowers(float down, float up) {
   };
 }
 
+ShadingLight sunAlong(const glm::vec3& travel) {
+  return {.travel = vec4(travel, 0.f), .irradiance = vec4(1.f)};
+}
+constexpr glm::vec3 kDown{0.f, 0.f, -1.f};
+
 // A leaf in the light that travels along `travel`, and in a slab about it with such powers.
 FragmentShading leafShading(const LeafOptics& leaf, const glm::vec3& travel, float down, float up) {
   TreeKind kind;
   kind.leaf.fill(leaf);
   ShadingData data;
-  update(data, Model::pp, std::array{kind}, std::array{StandLight{.along = travel}}, uniformPowers(down, up));
+  update(data, Model::pp, std::array{kind}, std::array{sunAlong(travel)}, uniformPowers(down, up));
   return FragmentShading(Model::pp, data);
 }
 
@@ -157,7 +162,7 @@ TEST(R27_FragmentShading, ByStreamsIsThatOfTheSlab) {
   TreeKind kind;
   kind.leaf.fill(leaf);
   ShadingData data;
-  update(data, Model::nstreamg, std::array{kind}, std::array{StandLight{}});
+  update(data, Model::nstreamg, std::array{kind}, std::array{sunAlong(kDown)});
   const FragmentShading shading(Model::nstreamg, data);
   const spp::StreamConstants constants = spp::nStreamConstants(spp::sphericalLeaves(leaf), 2, 1);
   for (const float thickness : {0.5f, 4.f, 30.f})
@@ -185,14 +190,14 @@ TEST(R27_FragmentShading, KeepsTablesWhileLeavesStay) {
   };
   TreeKind kind;
   ShadingData data;
-  update(data, Model::pp, std::array{kind}, std::array{StandLight{}}, counting);
+  update(data, Model::pp, std::array{kind}, std::array{sunAlong(kDown)}, counting);
   EXPECT_EQ(made, 1);  // bands that are alike share it
-  update(data, Model::pp, std::array{kind}, std::array{StandLight{.along = {1.f, 0.f, 0.f}}}, counting);
+  update(data, Model::pp, std::array{kind}, std::array{sunAlong({1.f, 0.f, 0.f})}, counting);
   EXPECT_EQ(made, 1);
   EXPECT_EQ(data.lights[0].travel.x, 1.f);
   kind.leaf[2].reflectance = 0.1f;
-  update(data, Model::pp, std::array{kind}, std::array{StandLight{}}, counting);
+  update(data, Model::pp, std::array{kind}, std::array{sunAlong(kDown)}, counting);
   EXPECT_EQ(made, 3);
   EXPECT_EQ(data.constants[2], 0.1f);
-  EXPECT_THROW(update(data, Model::pp, std::array{kind, kind}, std::array{StandLight{}}), std::invalid_argument);
+  EXPECT_THROW(update(data, Model::pp, std::array{kind, kind}, std::array{sunAlong(kDown)}), std::invalid_argument);
 }

@@ -126,8 +126,9 @@ std::vector<TreeKind> twoKinds() {
   return kinds;
 }
 ShadingData twoKindsTwoSuns(Model model) {
-  const std::array lights{StandLight{.along = sunlight(0.5f, 1.f), .irradiance = {1.f, 0.8f, 0.3f}},
-                          StandLight{.along = sunlight(1.4f, 3.f), .irradiance = {0.1f, 2.f, 0.f}}};
+  const std::array lights{
+      ShadingLight{.travel = vec4(sunlight(0.5f, 1.f), 0.f), .irradiance = vec4(1.f, 0.8f, 0.3f, 0.f)},
+      ShadingLight{.travel = vec4(sunlight(1.4f, 3.f), 0.f), .irradiance = vec4(0.1f, 2.f, 0.f, 0.f)}};
   ShadingData data;
   update(data, model, twoKinds(), lights, exactPowerTable);
   return data;

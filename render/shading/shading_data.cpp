@@ -41,7 +41,7 @@ KindOptics opticsOf(const TreeKind& kind) {
 
 }  // namespace
 
-void update(ShadingData& data, Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights,
+void update(ShadingData& data, Model model, std::span<const TreeKind> kinds, std::span<const ShadingLight> lights,
             const spp::PowerTableOf& exact) {
   assert(kinds.size() <= kMostSurfaceKinds && lights.size() <= kMostShadingLights);
   std::vector<BandOptics> leaves;
@@ -52,9 +52,7 @@ void update(ShadingData& data, Model model, std::span<const TreeKind> kinds, std
   data.leaves = std::move(leaves);
   data.kinds.clear();
   for (const TreeKind& kind : kinds) data.kinds.push_back(opticsOf(kind));
-  data.lights.clear();
-  for (const StandLight& light : lights)
-    data.lights.push_back({.travel = vec4(light.along, 0.f), .irradiance = vec4(light.irradiance, 0.f)});
+  data.lights.assign(lights.begin(), lights.end());
 }
 
 }  // namespace sunfleck::shading

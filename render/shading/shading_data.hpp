@@ -35,7 +35,7 @@ struct ShadingData {
 // Brings the data up to date; what depends on leaves and model alone stays while these do.
 //   kinds, lights  as fragments number them, at most kMostSurfaceKinds and kMostShadingLights
 //   exact          for models of the exact solution; without it these throw std::invalid_argument
-void update(ShadingData& data, Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights,
+void update(ShadingData& data, Model model, std::span<const TreeKind> kinds, std::span<const ShadingLight> lights,
             const spp::PowerTableOf& exact = {});
 
 }  // namespace sunfleck::shading
