@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/buffer.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/program.hpp"
@@ -108,23 +109,28 @@ glm::vec3 direction(Random& random) {
   return {across * std::cos(azimuth), across * std::sin(azimuth), z};
 }
 
-// Two kinds, whose bands reach from black to white, and two suns.
-Scene twoKinds() {
-  Scene scene;
-  scene.kinds.resize(2);
-  scene.kinds[0].leaf = {LeafOptics{.reflectance = 0.475f, .transmittance = 0.475f},
-                         LeafOptics{.reflectance = 0.1f, .transmittance = 0.05f},
-                         LeafOptics{.reflectance = 0.f, .transmittance = 0.f}};
-  scene.kinds[1].leaf = {LeafOptics{.reflectance = 0.7f, .transmittance = 0.3f},
-                         LeafOptics{.reflectance = 0.f, .transmittance = 1.f},
-                         LeafOptics{.reflectance = 0.4f, .transmittance = 0.f}};
-  scene.kinds[1].wood_reflectance = glm::vec3(0.5f, 0.2f, 1.f);
-  return scene;
+// Two kinds, whose bands reach from black to white; in two suns.
+std::vector<TreeKind> twoKinds() {
+  std::vector<TreeKind> kinds(2);
+  kinds[0].leaf = {LeafOptics{.reflectance = 0.475f, .transmittance = 0.475f},
+                   LeafOptics{.reflectance = 0.1f, .transmittance = 0.05f},
+                   LeafOptics{.reflectance = 0.f, .transmittance = 0.f}};
+  kinds[1].leaf = {LeafOptics{.reflectance = 0.7f, .transmittance = 0.3f},
+                   LeafOptics{.reflectance = 0.f, .transmittance = 1.f},
+                   LeafOptics{.reflectance = 0.4f, .transmittance = 0.f}};
+  for (LeafOptics& leaf : kinds[1].leaf) {
+    leaf.gloss = 0.5f * leaf.albedo();
+    leaf.gloss_roughness = 0.2f;
+  }
+  kinds[1].wood_reflectance = glm::vec3(0.5f, 0.2f, 1.f);
+  return kinds;
 }
 ShadingData twoKindsTwoSuns(Model model) {
-  ShadingData data = shadingData(model, twoKinds());
-  data.lights = {{.travel = vec4(sunlight(0.5f, 1.f), 0.f), .irradiance = vec4(1.f, 0.8f, 0.3f, 0.f)},
-                 {.travel = vec4(sunlight(1.4f, 3.f), 0.f), .irradiance = vec4(0.1f, 2.f, 0.f, 0.f)}};
+  const std::array lights{
+      ShadingLight{.travel = vec4(sunlight(0.5f, 1.f), 0.f), .irradiance = vec4(1.f, 0.8f, 0.3f, 0.f)},
+      ShadingLight{.travel = vec4(sunlight(1.4f, 3.f), 0.f), .irradiance = vec4(0.1f, 2.f, 0.f, 0.f)}};
+  ShadingData data;
+  update(data, model, twoKinds(), lights, exactPowerTable);
   return data;
 }
 

@@ -129,7 +129,7 @@ Image scenePicture(const Scene& scene, const StandGeometry& geometry, const Pict
   const Camera camera = cameraOf(scene);
   requireDrawable(camera);
   const Context context;
-  StandRenderer renderer(context);
+  StandRenderer renderer(context, effort.exact);
   renderer.update(drawnStand(scene, geometry));
   return standPicture(context, renderer, camera, effort, progress);
 }
