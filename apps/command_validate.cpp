@@ -14,6 +14,7 @@
 #include "core/whole_file.hpp"
 #include "plants/species.hpp"
 #include "render/compare/paper_table.hpp"
+#include "render/compare/pixel_rays.hpp"
 #include "render/compare/report_html.hpp"
 #include "render/compare/report_json.hpp"
 #include "render/compare/validation.hpp"
@@ -62,26 +63,25 @@ std::string percent(const std::optional<double>& fraction, const char* sign = ""
 // Ours and the paper's Table 3. Its tree is a cherry too, but not this one.
 std::string table(std::span<const Validation> validations) {
   const Validation& first = validations.front();
-  const TreeMesh& mesh = *first.scene.kinds[0].mesh;
-  const std::size_t leaves = mesh.leaf_count, triangles = mesh.leaf_triangles.size();
+  const std::size_t leaves = first.leaves, triangles = first.leaf_triangles;
   std::string text =
       fmt::format("{}: {} {} ({} {}), {:.4g} m2, albedo {:.3g}, sun {:.3g} degrees from the zenith\n", first.scene.name,
                   leaves, leaves == 1 ? "leaf" : "leaves", triangles, triangles == 1 ? "triangle" : "triangles",
-                  first.leaf_area, first.optics().albedo(), first.scene.sun_zenith * 57.29578f);
+                  first.leaf_area, first.albedo(), first.scene.sun().zenith * 57.29578f);
   for (const Validation& v : validations) {
     text += fmt::format("\n{:<12} RMS error against Monte Carlo, mean depth {:.2f} in {:.2f}\n", kindOf(v.scene),
                         v.mean_depth, v.mean_thickness);
-    text += fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>12}\n", "model", "by category", "paper",
+    text += fmt::format("  {:<8} {:>12} {:>8} {:>12} {:>10} {:>12} {:>12}\n", "model", "by category", "paper",
                         "by leaves", "per leaf", "total light", "time");
     for (const ModelResult& m : v.models) {
       const std::optional<double> paper = paperError(v, m.model);
-      text += fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>9.0f} ms\n", labelOf(m.model),
+      text += fmt::format("  {:<8} {:>12} {:>8} {:>12} {:>10} {:>12} {:>9.0f} ms\n", labelOf(m.model),
                           percent(m.errors.rms_category), paper ? fmt::format("{:.3g} %", 100. * *paper) : "-",
                           percent(m.errors.rms_weighted), percent(m.errors.rms_leaf), percent(m.errors.bias, "+"),
                           1e3 * (m.prepare_seconds + m.shade_seconds));
     }
     text +=
-        fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>10.1f} s   ({:.3g} million paths)\n", "noise", "", "",
+        fmt::format("  {:<8} {:>12} {:>8} {:>12} {:>10} {:>12} {:>10.1f} s   ({:.3g} million paths)\n", "noise", "", "",
                     v.category_noise ? fmt::format("{:.2f} %", 100. * *v.category_noise) : "-",
                     percent(v.reference_noise), "", v.reference.seconds, static_cast<double>(v.reference.paths) * 1e-6);
     if (!v.reference_noise) text += "  no path of Monte Carlo lit a leaf: there is nothing to compare with\n";
@@ -154,10 +154,13 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
   StandGeometry stand(options.geometry);
   for (const Scene& scene : scenes) {
     if (interrupted()) break;
-    stand.update(scene, Model::sppg, std::nullopt, terminalProgress("opacity maps and cells", run.quiet));
+    stand.update(scene, {}, std::nullopt, terminalProgress("opacity maps and cells", run.quiet));
     validations.push_back(
         validate(scene, stand, options.effort, terminalProgress("Monte Carlo, " + kindOf(scene), run.quiet)));
-    if (pictures.empty() && !options.no_pictures && !interrupted())
+    const bool plain = scene.kinds.size() == 1 && std::ranges::all_of(scene.stand.trees, [](const Placement& tree) {
+                         return tree.rotation == 0.f;
+                       });
+    if (plain && pictures.empty() && !options.no_pictures && !interrupted())
       pictures = picturesIfPossible(options, run, scene, stand);
   }
   if (validations.empty()) {

@@ -1,33 +1,17 @@
 #include "apps/pictures.hpp"
 
-#include "render/gl/tree_picture.hpp"
+#include "core/require.hpp"
+#include "render/compare/exact_powers.hpp"
+#include "render/gl/stand_picture.hpp"
 
 namespace sunfleck::apps {
 
 Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress) {
-  gl::ShadingData data{.sun = &stand.light(), .cells = &stand.cells()};
-  for (const std::vector<float>& of_tree : stand.compensation()) data.compensation.emplace_back(of_tree);
-  return gl::treePicture(scene, data, model, progress);
+  return gl::scenePicture(scene, stand, {.model = model, .exact = exactPowerTable}, progress);
 }
 
 void showGround(Scene& scene) {
   scene.ground_albedo = glm::vec3(0.16f);
-}
-
-PixelRays pixelRays(const Scene& scene) {
-  const Camera camera = cameraOf(scene);
-  const Axes view = viewAxes(camera);
-  const Bounds box = bounds(scene);
-  // Far enough behind the target to see all in front, and the ground below, without losing digits.
-  const float away = 4.f * (glm::length(box.size()) + glm::length(box.centre() - camera.target) + camera.half_width);
-  const float pixel = 2.f * camera.half_width / static_cast<float>(camera.width);
-  const float half_height = 0.5f * pixel * static_cast<float>(camera.height);
-  return {.corner = camera.target - away * view.along - camera.half_width * view.right + half_height * view.up,
-          .right_step = pixel * view.right,
-          .down_step = -pixel * view.up,
-          .sight = view.along,
-          .width = camera.width,
-          .height = camera.height};
 }
 
 }  // namespace sunfleck::apps

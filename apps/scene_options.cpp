@@ -20,8 +20,10 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
                   "Share of light that leaves scatter, half of it reflected; overrides the scene's optics")
       ->check(numberIn(0., 1., "in [0, 1]"))
       ->group(group);
-  command.add_option("--sun-zenith", options.sun_zenith_deg, "Angle of the sun from overhead, in degrees")
-      ->check(numberIn(0., 89.9, "in [0, 89.9] degrees"))
+  command
+      .add_option("--sun-zenith", options.sun_zenith_deg,
+                  "Angle of the sun from overhead, in degrees; from 89.9 on it has set")
+      ->check(numberIn(0., 180., "in [0, 180] degrees"))
       ->group(group);
   command.add_option("--sun-azimuth", options.sun_azimuth_deg, "Where the sun stands, in degrees from +x towards +y")
       ->check(numberIn(-360., 360., "in [-360, 360] degrees"))
@@ -84,15 +86,15 @@ Scene readScene(const SceneOptions& options, Media media) {
     for (SceneMedium& medium : scene.media)
       if (!medium.particles)
         medium.optics.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
-  if (options.sun_zenith_deg) scene.sun_zenith = glm::radians(*options.sun_zenith_deg);
-  if (options.sun_azimuth_deg) scene.sun_azimuth = glm::radians(*options.sun_azimuth_deg);
+  if (options.sun_zenith_deg) scene.suns.front().zenith = glm::radians(*options.sun_zenith_deg);
+  if (options.sun_azimuth_deg) scene.suns.front().azimuth = glm::radians(*options.sun_azimuth_deg);
   if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);
   intoOnePeriod(scene.stand);
   return scene;
 }
 
 void addCameraOptions(CLI::App& command, CameraOptions& options, const std::string& target_name) {
-  const std::string group = "Camera (orthographic; shows the whole stand unless told otherwise)";
+  const std::string group = "Camera (shows the whole stand unless told otherwise)";
   command.add_option("--elevation", options.elevation_deg, "Height of the camera above the horizon, in degrees")
       ->check(numberIn(-90., 90., "in [-90, 90] degrees"))
       ->group(group);
@@ -106,6 +108,15 @@ void addCameraOptions(CLI::App& command, CameraOptions& options, const std::stri
   command.add_option("--half-width", options.half_width, "Half of the picture's width in the scene, in metres")
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6] m"))
       ->group(group);
+  command
+      .add_option("--field-of-view", options.field_of_view_deg,
+                  "Of the picture's width, in degrees; 0: orthographic (default). In perspective, --half-width is that "
+                  "at the point in the middle")
+      ->check([](const std::string& text) {
+        const bool zero = numberIn(0., 0., "0")(text).empty();
+        return zero ? std::string() : numberIn(0.1, 150., "0 or in [0.1, 150] degrees")(text);
+      })
+      ->group(group);
   command.add_option("--size", options.size, "Width and height of the picture, in pixels")
       ->expected(2)
       ->transform(wholeNumberIn(1., 8192., "a whole number, 1 to 8192"))
@@ -117,6 +128,7 @@ void apply(const CameraOptions& options, Scene& scene) {
   Camera camera = scene.camera.value_or(kOverview);
   if (options.elevation_deg) camera.elevation = glm::radians(*options.elevation_deg);
   if (options.azimuth_deg) camera.azimuth = glm::radians(*options.azimuth_deg);
+  if (options.field_of_view_deg) camera.field_of_view = glm::radians(*options.field_of_view_deg);
   if (options.size) {
     camera.width = (*options.size)[0];
     camera.height = (*options.size)[1];

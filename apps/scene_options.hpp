@@ -27,10 +27,10 @@ Scene readScene(const SceneOptions& options, Media media = Media::refused);
 
 // The camera, as far as the command line changes it.
 struct CameraOptions {
-  std::optional<float> elevation_deg, azimuth_deg, half_width;
+  std::optional<float> elevation_deg, azimuth_deg, half_width, field_of_view_deg;
   std::optional<std::vector<float>> target;
   std::optional<std::vector<int>> size;
-  bool given() const { return elevation_deg || azimuth_deg || half_width || target || size; }
+  bool given() const { return elevation_deg || azimuth_deg || half_width || field_of_view_deg || target || size; }
 };
 //   target_name  of the option for the point in the middle; where --target is an error, --look-at alone
 void addCameraOptions(CLI::App& command, CameraOptions& options, const std::string& target_name = "--look-at,--target");

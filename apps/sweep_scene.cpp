@@ -13,6 +13,7 @@
 #include "apps/trace_output.hpp"
 #include "core/elapsed.hpp"
 #include "core/require.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
 #include "render/reference/trace_goal.hpp"
@@ -80,8 +81,8 @@ SweepScene::SweepScene(const SweepFile& sweep, std::size_t scene, std::uint64_t 
 // The scene in one row. Optics stand in the band that they are of.
 Scene SweepScene::sceneOf(const SweepTask& task, const SweepOptics& optics) const {
   Scene scene = scene_;
-  if (task.sun.zenith_deg) scene.sun_zenith = glm::radians(static_cast<float>(*task.sun.zenith_deg));
-  if (task.sun.azimuth_deg) scene.sun_azimuth = glm::radians(static_cast<float>(*task.sun.azimuth_deg));
+  if (task.sun.zenith_deg) scene.suns.front().zenith = glm::radians(static_cast<float>(*task.sun.zenith_deg));
+  if (task.sun.azimuth_deg) scene.suns.front().azimuth = glm::radians(static_cast<float>(*task.sun.azimuth_deg));
   for (TreeKind& kind : scene.kinds) {
     if (optics.leaf) kind.leaf[static_cast<std::size_t>(optics.band)] = *optics.leaf;
     if (optics.wood_reflectance) kind.wood_reflectance[optics.band] = *optics.wood_reflectance;
@@ -111,8 +112,8 @@ std::vector<SweepRow> SweepScene::rows(const SweepTask& task) const {
           shared(scene, [&](const TreeKind& kind) { return kind.leaf[static_cast<std::size_t>(optics.band)]; });
       const auto wood = shared(scene, [&](const TreeKind& kind) { return kind.wood_reflectance[optics.band]; });
       const std::string inputs = fmt::format(
-          "{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},", csvField(name_), glm::degrees(scene.sun_zenith),
-          glm::degrees(scene.sun_azimuth), optics.leaf ? "" : std::to_string(optics.band),
+          "{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},", csvField(name_), glm::degrees(scene.sun().zenith),
+          glm::degrees(scene.sun().azimuth), optics.leaf ? "" : std::to_string(optics.band),
           leaf ? fmt::format("{}", leaf->reflectance) : "", leaf ? fmt::format("{}", leaf->transmittance) : "",
           orNothing(wood), scene.ground_albedo[optics.band], sweep_.with_wood ? "with" : "without", seed_,
           sweep_.target ? orNothing(sweep_.paths) : fmt::format("{}", sweep_.paths.value_or(kPaths)),
@@ -151,7 +152,7 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
   if (!sweep_.models.empty()) {
     const Scene scene = sceneOf(task, task.optics[0]);
     try {
-      stand_.update(scene, Model::sppg, std::nullopt, [&](double) { return goOn(progress, 1.); });
+      stand_.update(scene, {}, std::nullopt, [&](double) { return goOn(progress, 1.); });
       geometry = leafGeometry(scene, stand_, [&](double) { return goOn(progress, 1.); });
     } catch (const std::runtime_error&) {
       if (!goOn(progress, 1.)) return std::nullopt;
@@ -171,9 +172,12 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
     }
     if (sweep_.monte_carlo) rows.push_back(fmt::format("{},{},,,,", mc, noise));
     const SweepOptics& optics = task.optics[i];
-    const LeafOptics leaf = sceneOf(task, optics).kinds[0].leaf[static_cast<std::size_t>(optics.band)];
+    std::vector<LeafOptics> leaf;
+    for (const TreeKind& kind : sceneOf(task, optics).kinds)
+      leaf.push_back(kind.leaf[static_cast<std::size_t>(optics.band)]);
     for (const Model model : sweep_.models) {
-      const ModelErrors errors = modelErrors(leafIrradiance(model, geometry, leaf), result.leaf_irradiance, of_depths);
+      const ModelErrors errors =
+          modelErrors(leafIrradiance(model, geometry, leaf, exactPowerTable), result.leaf_irradiance, of_depths);
       rows.push_back(fmt::format("{},{},{},{},{},{}", empty, noise, orNothing(errors.rms_category),
                                  orNothing(errors.rms_weighted), orNothing(errors.rms_leaf), orNothing(errors.bias)));
     }

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace sunfleck {
 namespace {
 
 constexpr float kMargin = 1.08f;  // room around the stand, as a share of its size in the picture
+constexpr float kNearest = 0.2f;  // that an eye comes to the stand, as a share of half its size in the picture
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <typename Visit>
 void forVertices(const TreeMesh& tree, const Visit& visit) {
@@ -75,55 +78,73 @@ Bounds bounds(const Scene& scene) {
 }
 
 std::vector<std::size_t> treesInPicture(const Scene& scene, const Camera& camera) {
-  const Axes axes = viewAxes(camera);
+  const auto sides = sidesOfSight(camera);
   const std::vector<Bounds> prototypes = prototypeBounds(scene);
-  const float half_height = camera.half_width * static_cast<float>(camera.height) / static_cast<float>(camera.width);
   std::vector<std::size_t> seen;
   for (std::size_t i = 0; i < scene.stand.trees.size(); ++i) {
     const Placement& tree = scene.stand.trees[i];
     const Bounds box = standing(*scene.kindOf(tree).mesh, prototypes[tree.kind], tree);
-    const glm::vec3 half = 0.5f * box.size(), away = box.centre() - camera.target;
-    const bool beside = std::abs(glm::dot(away, axes.right)) > camera.half_width + glm::dot(half, glm::abs(axes.right));
-    const bool above = std::abs(glm::dot(away, axes.up)) > half_height + glm::dot(half, glm::abs(axes.up));
-    if (scene.stand.period || !(beside || above)) seen.push_back(i);
+    const bool aside = std::any_of(sides.begin(), sides.end(), [&](const glm::vec4& side) {
+      const glm::vec3 inward(side);
+      return glm::dot(inward, box.centre()) + side.w + 0.5f * glm::dot(glm::abs(inward), box.size()) < 0.f;
+    });
+    if (scene.stand.period || !aside) seen.push_back(i);
   }
   return seen;
 }
 
-// The picture is as large as what it shows: the trees' vertices, not the corners of their boxes.
-Camera showingAll(const Scene& scene, Camera camera) {
-  const Axes axes = viewAxes(camera);
-  Bounds seen;  // along right, up and the direction of sight
+namespace {
+
+// Visits points that a picture of the whole stand must hold: the trees' vertices, not the corners of their boxes, and
+// the corners of media.
+template <typename Visit>
+void forPoints(const Scene& scene, const Visit& visit) {
   for (const Placement& placement : scene.stand.trees) {
     const float cosine = std::cos(placement.rotation), sine = std::sin(placement.rotation);
-    forVertices(*scene.kindOf(placement).mesh, [&](const glm::vec3& v) {
-      const glm::vec3 p = placed(v, placement, cosine, sine);
-      seen.include({glm::dot(p, axes.right), glm::dot(p, axes.up), glm::dot(p, axes.along)});
-    });
+    forVertices(*scene.kindOf(placement).mesh, [&](const glm::vec3& v) { visit(placed(v, placement, cosine, sine)); });
   }
-  if (!scene.media.empty()) {
-    const Bounds all = bounds(scene);
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 p(corner & 1 ? all.low.x : all.high.x, corner & 2 ? all.low.y : all.high.y,
-                        corner & 4 ? all.low.z : all.high.z);
-      seen.include({glm::dot(p, axes.right), glm::dot(p, axes.up), glm::dot(p, axes.along)});
-    }
-  }
-  const glm::vec3 centre = seen.centre(), half_size = 0.5f * seen.size();
-  camera.target = centre.x * axes.right + centre.y * axes.up + centre.z * axes.along;
+  if (scene.media.empty()) return;
+  const Bounds all = bounds(scene);
+  for (int corner = 0; corner < 8; ++corner)
+    visit(glm::vec3(corner & 1 ? all.low.x : all.high.x, corner & 2 ? all.low.y : all.high.y,
+                    corner & 4 ? all.low.z : all.high.z));
+}
+
+}  // namespace
+
+// In perspective, with s the slope of a side, all x lie between the sides through an eye at (x0, z0) if
+// x - x0 <= s (z - z0) and x0 - x <= s (z - z0): the largest of x - s z and of -x - s z say where the eye is.
+Camera showingAll(const Scene& scene, Camera camera) {
+  const Axes axes = viewAxes(camera);
   const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
-  camera.half_width = kMargin * std::max({half_size.x, half_size.y * aspect, 1e-6f});
+  const float slope = std::tan(0.5f * camera.field_of_view) / kMargin;
+  const glm::vec2 slopes(slope, slope / aspect);
+  Bounds seen;                           // along right, up and the direction of sight
+  glm::vec2 low(kInfinity), high(-low);  // least place + slope * depth, largest place - slope * depth
+  forPoints(scene, [&](const glm::vec3& p) {
+    const glm::vec3 at(glm::dot(p, axes.right), glm::dot(p, axes.up), glm::dot(p, axes.along));
+    seen.include(at);
+    low = glm::min(low, glm::vec2(at) + slopes * at.z);
+    high = glm::max(high, glm::vec2(at) - slopes * at.z);
+  });
+  if (seen.empty()) return camera;
+  glm::vec3 centre = seen.centre();
+  const glm::vec3 half_size = 0.5f * seen.size();
+  if (!camera.perspective()) {
+    camera.half_width = kMargin * std::max({half_size.x, half_size.y * aspect, 1e-6f});
+  } else {
+    const glm::vec2 eye_depth = 0.5f * (low - high) / slopes;
+    const float before = seen.low.z - kNearest * std::max(half_size.x, half_size.y);
+    const float away = centre.z - std::min({eye_depth.x, eye_depth.y, before});
+    centre = {0.5f * (high + low), centre.z};
+    camera.half_width = std::max(away * kMargin * slope, 1e-6f);
+  }
+  camera.target = centre.x * axes.right + centre.y * axes.up + centre.z * axes.along;
   return camera;
 }
 
 Camera cameraOf(const Scene& scene) {
   return scene.camera ? *scene.camera : showingAll(scene, kOverview);
-}
-
-Axes viewAxes(const Camera& camera) {
-  const float ce = std::cos(camera.elevation), se = std::sin(camera.elevation);
-  const float ca = std::cos(camera.azimuth), sa = std::sin(camera.azimuth);
-  return {.right = {-sa, ca, 0.f}, .up = {-se * ca, -se * sa, ce}, .along = {-ce * ca, -ce * sa, -se}};
 }
 
 }  // namespace sunfleck

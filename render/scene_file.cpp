@@ -160,10 +160,19 @@ void readStand(Scene& scene, detail::SceneTable stand) {
           scene.origin, scene.kinds[i].name, scene.kinds.size()));
 }
 
+// Zero, which means something of its own, or an angle in a range; in radians.
+float degreesOrZero(detail::SceneTable& table, const std::string& where, const char* key, double low, double high) {
+  const std::string rule = fmt::format("0 or in [{}, {}]", low, high);
+  const double value = table.number(key, 0., 0., high, rule);
+  require(value == 0. || value >= low, where + "." + key, value, rule);
+  return glm::radians(static_cast<float>(value));
+}
+
 void readCamera(Scene& scene, detail::SceneTable camera) {
   Camera read = kOverview;
   if (camera.has("elevation_deg")) read.elevation = degrees(camera, "elevation_deg", -90., 90., "in [-90, 90]");
   if (camera.has("azimuth_deg")) read.azimuth = degrees(camera, "azimuth_deg", -360., 360., "in [-360, 360]");
+  read.field_of_view = degreesOrZero(camera, scene.origin + ": camera", "field_of_view_deg", 0.1, 150.);
   read.width = camera.count("width", read.width, 8192);
   read.height = camera.count("height", read.height, 8192);
   read = showingAll(scene, read);
@@ -177,16 +186,25 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
   scene.camera = read;
 }
 
-void readSun(Scene& scene, detail::SceneTable sun) {
-  constexpr double kLeastDiameter = 0.25, kMostDiameter = 60.;  // as Monte Carlo takes it
-  scene.sun_zenith = degrees(sun, "zenith_deg", 0., 89.9, "in [0, 89.9]");
-  scene.sun_azimuth = degrees(sun, "azimuth_deg", -360., 360., "in [-360, 360]");
-  scene.sun_irradiance = sun.perBand("irradiance", scene.sun_irradiance, 10.);
-  const double diameter = sun.number("diameter_deg", 0., 0., kMostDiameter, "0 or in [0.25, 60]");
-  require(diameter == 0. || diameter >= kLeastDiameter, scene.origin + ": sun.diameter_deg", diameter,
-          "0 or in [0.25, 60]");
-  scene.sun_diameter = glm::radians(static_cast<float>(diameter));
-  sun.done();
+Sun readSun(const std::string& origin, detail::SceneTable table) {
+  Sun sun;
+  sun.zenith = degrees(table, "zenith_deg", 0., 180., "in [0, 180]");
+  sun.azimuth = degrees(table, "azimuth_deg", -360., 360., "in [-360, 360]");
+  sun.irradiance = table.perBand("irradiance", sun.irradiance, 10.);
+  sun.diameter = degreesOrZero(table, origin + ": sun", "diameter_deg", 0.25, 60.);  // as Monte Carlo takes it
+  table.done();
+  return sun;
+}
+
+void readSuns(Scene& scene, const toml::node* node, const std::filesystem::path& file) {
+  const toml::array* several = node ? node->as_array() : nullptr;  // [[sun]]
+  if (several && (several->empty() || several->size() > kMostSuns))
+    throw InvalidInput(fmt::format("{}:{}: number of [[sun]] = {}: must be from 1 to {}", file.string(),
+                                   node->source().begin.line, several->size(), kMostSuns));
+  scene.suns.clear();
+  for (std::size_t i = 0; i < (several ? several->size() : 1); ++i)
+    scene.suns.push_back(
+        readSun(scene.origin, detail::SceneTable(several ? several->get(i) : node, file.string(), "sun")));
 }
 
 void readSky(Scene& scene, detail::SceneTable sky, const std::filesystem::path& folder) {
@@ -295,7 +313,7 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
     scene.kinds[0].mesh = std::make_shared<const TreeMesh>();
   }
   readStand(scene, section("stand"));
-  readSun(scene, section("sun"));
+  readSuns(scene, table.get("sun"), file);
   readSky(scene, section("sky"), file.parent_path());
   sunAndSky(scene);  // refuses a sky that cannot be
   if (table.contains("camera")) readCamera(scene, section("camera"));
@@ -442,10 +460,12 @@ albedo = 0.0                  # lambert: 0 to 1; 0: no ground
 # texture_size = 1.0          # texture: metres that its width covers
 
 [sun]
-zenith_deg = 0.0              # 0 overhead, to 89.9
+zenith_deg = 0.0              # 0 overhead, to 180; from 89.9 on it has set and gives no light
 azimuth_deg = 0.0             # where the sun stands, from +x towards +y
 irradiance = 1.0              # of a plane that faces the sun, 0 to 10; 0: no sun. All results are relative to 1
-diameter_deg = 0.0            # of its disc, 0.25 to 60; the real one has 0.533; 0: a point
+diameter_deg = 0.0            # of its disc, 0.25 to 60; the real one has 0.533; 0: a point, as which render draws it
+# Several suns, at most 4: a [[sun]] with these keys for each, instead of [sun]. The first is the one that lights a
+# preetham sky. render takes several, trace and validate one alone.
 
 [sky]                         # trace alone knows a sky, and a sun of other irradiance or with a disc
 kind = "none"                 # none | uniform | overcast | preetham | image
@@ -457,11 +477,13 @@ kind = "none"                 # none | uniform | overcast | preetham | image
                               # zenith on top. Its lower half is not used; a sun in it adds to [sun]
 # rotation_deg = 0.0          # image: azimuth of its middle column; to the right of it the azimuth falls
 
-[camera]                      # orthographic; shows the whole stand if left out
+[camera]                      # shows the whole stand if left out
 # target = [0.0, 0.0, 4.0]    # point in the middle of the picture
 # elevation_deg = 10.0        # -90 to 90
 # azimuth_deg = 20.0          # where the camera stands, from +x towards +y
-# half_width = 5.0            # half of the picture's width
+# half_width = 5.0            # half of the picture's width, in perspective at the target: with the field of view it
+                              # says how far away the eye is
+# field_of_view_deg = 0.0     # of the picture's width, 0.1 to 150; 0: orthographic
 # width = 512                 # pixels, 1 to 8192
 # height = 512
 )";

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/require.hpp"
+#include "render/compare/exact_powers.hpp"
 
 namespace sunfleck {
 namespace {
@@ -34,12 +35,18 @@ std::optional<double> categoryNoise(const ForwardResult& reference, std::span<co
 
 std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& bands) {
   const SunAndSky shining = sunAndSky(scene);
+  std::vector<std::size_t> lit;
+  for (std::size_t i = 0; i < shining.suns.size(); ++i)
+    if (shining.suns[i] != glm::vec3(0.f)) lit.push_back(i);
+  require(lit.size() <= 1, (scene.origin.empty() ? "" : scene.origin + ": ") + "number of suns that shine", lit.size(),
+          "1 for Monte Carlo (render takes several; light adds up: trace one after the other)");
+  const Sun overhead{.irradiance = glm::vec3(0.f)}, &sun = lit.empty() ? overhead : scene.suns[lit[0]];
   std::vector<TraceLight> lights;
   for (const int band : bands) {
-    TraceLight& light = lights.emplace_back(TraceLight{.sun = scene.sun(),
+    TraceLight& light = lights.emplace_back(TraceLight{.sun = sun.light(),
                                                        .ground_albedo = scene.ground_albedo[band],
-                                                       .sun_irradiance = shining.sun[band],
-                                                       .sun_diameter = scene.sun_diameter,
+                                                       .sun_irradiance = lit.empty() ? 0.f : shining.suns[lit[0]][band],
+                                                       .sun_diameter = sun.diameter,
                                                        .sky = shining.sky,
                                                        .sky_band = band});
     if (scene.ground_rpv) light.ground_rpv = (*scene.ground_rpv)[static_cast<std::size_t>(band)];
@@ -73,6 +80,22 @@ void requireValidatable(const Scene& scene, int band) {
           "0 for validation: the models know no ground");
 }
 
+std::vector<LeafOptics> Validation::optics() const {
+  std::vector<LeafOptics> of_kinds;
+  for (const TreeKind& kind : scene.kinds) of_kinds.push_back(kind.leaf[static_cast<std::size_t>(effort.band)]);
+  return of_kinds;
+}
+
+double Validation::albedo() const {
+  double sum = 0., area = 0.;
+  for (const TreeKind& kind : scene.kinds) {
+    const double of_kind = leafArea(*kind.mesh);
+    sum += of_kind * double{kind.leaf[static_cast<std::size_t>(effort.band)].albedo()};
+    area += of_kind;
+  }
+  return sum / area;
+}
+
 Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
                     const Progress& progress) {
   requireValidatable(scene, effort.band);
@@ -82,14 +105,18 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
   result.depths = meanDepths(geometry);
   result.mean_depth = mean(result.depths.depth);
   result.mean_thickness = mean(result.depths.thickness);
-  result.leaf_area = leafArea(*scene.kinds[0].mesh);
+  for (const TreeKind& kind : scene.kinds) {
+    result.leaves += kind.mesh->leaf_count;
+    result.leaf_triangles += kind.mesh->leaf_triangles.size();
+    result.leaf_area += leafArea(*kind.mesh);
+  }
 
   const RayScene rays(meshes(scene), scene.stand, effort.with_wood);
   result.reference = traceForward(rays, traceLight(scene, band), effort.trace, progress);
   result.reference_noise = referenceNoise(result.reference.leaf_irradiance, result.reference.leaf_standard_error);
 
   result.categories = categories(result.depths);
-  result.leaves_left_out = scene.kinds[0].mesh->leaf_count;
+  result.leaves_left_out = result.leaves;
   for (const Category& category : result.categories) result.leaves_left_out -= category.leaves.size();
   result.category_noise = categoryNoise(result.reference, result.categories);
 
@@ -97,11 +124,11 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
     ModelResult& of_model = result.models.emplace_back();
     of_model.model = model;
     const auto start = std::chrono::steady_clock::now();
-    of_model.irradiance = leafIrradiance(model, geometry, result.optics());
+    of_model.irradiance = leafIrradiance(model, geometry, result.optics(), exactPowerTable);
     of_model.shade_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     of_model.prepare_seconds =
         stand.lightSeconds() + geometry.depth_seconds +
-        (model == Model::sppg ? stand.compensationSeconds() + geometry.compensation_seconds : 0.);
+        (needsCompensation(model) ? stand.compensationSeconds() + geometry.compensation_seconds : 0.);
     of_model.errors = modelErrors(of_model.irradiance, result.reference.leaf_irradiance, result.categories);
   }
   return result;

@@ -7,16 +7,22 @@
 
 namespace sunfleck::gl {
 
-// A box of floats that shaders read with trilinear interpolation, clamped to its outermost texel centres.
+// A box of texels of one or four floats that shaders read with trilinear interpolation, clamped to its outermost texel centres.
 class VolumeTexture {
  public:
-  // `values`: x runs fastest, then y, then z. Throws std::runtime_error when a side is longer than OpenGL allows.
-  VolumeTexture(glm::ivec3 size, std::span<const float> values);
+  // Throws std::runtime_error when a side is longer than OpenGL allows.
+  VolumeTexture(glm::ivec3 size, int channels);
+  // `values`: channels run fastest, then x, y and z.
+  void write(glm::ivec3 corner, glm::ivec3 size, std::span<const float> values);
+  int channels() const { return channels_; }
   void bind(unsigned unit) const;
+  glm::ivec3 size() const { return size_; }
   static int longestSide();  // [texel]
 
  private:
   static void destroy(unsigned name);
+  glm::ivec3 size_;
+  int channels_;
   ObjectName<&VolumeTexture::destroy> name_;
 };
 

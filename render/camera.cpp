@@ -1,0 +1,54 @@
+#include "render/camera.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace sunfleck {
+namespace {
+
+// Half of the picture's height in the scene, at the target [m].
+float halfHeight(const Camera& camera) {
+  return camera.half_width * static_cast<float>(camera.height) / static_cast<float>(camera.width);
+}
+
+// From the eye to the target [m].
+float reach(const Camera& camera) {
+  assert(camera.perspective());
+  return camera.half_width / std::tan(0.5f * camera.field_of_view);
+}
+
+}  // namespace
+
+Axes viewAxes(const Camera& camera) {
+  const float ce = std::cos(camera.elevation), se = std::sin(camera.elevation);
+  const float ca = std::cos(camera.azimuth), sa = std::sin(camera.azimuth);
+  return {.right = {-sa, ca, 0.f}, .up = {-se * ca, -se * sa, ce}, .along = {-ce * ca, -ce * sa, -se}};
+}
+
+glm::vec3 eyeOf(const Camera& camera) {
+  return camera.target - reach(camera) * viewAxes(camera).along;
+}
+
+Sight sightThrough(const Camera& camera, const glm::vec2& place) {
+  const Axes axes = viewAxes(camera);
+  const float right = camera.half_width * (2.f * place.x / static_cast<float>(camera.width) - 1.f);
+  const float up = halfHeight(camera) * (1.f - 2.f * place.y / static_cast<float>(camera.height));
+  const glm::vec3 aside = right * axes.right + up * axes.up;
+  if (!camera.perspective()) return {.from = camera.target + aside, .along = axes.along};
+  return {.from = eyeOf(camera), .along = glm::normalize(reach(camera) * axes.along + aside)};
+}
+
+std::array<glm::vec4, 4> sidesOfSight(const Camera& camera) {
+  const Axes axes = viewAxes(camera);
+  const auto side = [&](const glm::vec3& outward, float half) {
+    if (!camera.perspective()) return glm::vec4(-outward, half + glm::dot(outward, camera.target));
+    const glm::vec3 inward = glm::normalize(half * axes.along - reach(camera) * outward);
+    return glm::vec4(inward, -glm::dot(inward, eyeOf(camera)));
+  };
+  const float half_height = halfHeight(camera);
+  return {side(-axes.right, camera.half_width), side(axes.right, camera.half_width), side(-axes.up, half_height),
+          side(axes.up, half_height)};
+}
+
+}  // namespace sunfleck
