@@ -137,7 +137,7 @@ void requireModelled(const Scene& scene) {
 }
 
 GeometryNeeds needsOf(Model model) {
-  return {.compensation = model == Model::sppg, .ground_light = model == Model::sppg};
+  return {.compensation = needsCompensation(model), .ground_light = needsCompensation(model)};
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort)

@@ -52,9 +52,12 @@ inline constexpr auto kSeries = decaySeries<Real, kSeriesDegree<Real>>();
 
 #define SHARED_FN inline
 #define SHARED_IN(Type) Type
+#define SHARED_CONSTANT inline constexpr
 inline constexpr const float* kDecaySeries = detail::kSeries<float>.data();
 inline constexpr int kSeriesDegree = detail::kSeriesDegree<float>;
 #include "spp/spp_formulas.glsl"
+// The tables' part is for single numbers alone.
+#include "spp/power_table.glsl"
 
 namespace precise {
 using Number = double;
@@ -64,6 +67,7 @@ inline constexpr int kSeriesDegree = detail::kSeriesDegree<double>;
 }  // namespace precise
 #undef SHARED_FN
 #undef SHARED_IN
+#undef SHARED_CONSTANT
 
 // The precision of a kind of number that is made of others, such as the lanes of a vector.
 template <typename Number>

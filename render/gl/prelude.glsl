@@ -1,6 +1,7 @@
 // The GLSL face of the formulas shared with C++ (spp/slab.hpp is the other): what that text needs and GLSL lacks.
 #define SHARED_FN
 #define SHARED_IN(Type) Type
+#define SHARED_CONSTANT const
 #define Number float
 #define Length float
 #define InverseLength float
