@@ -172,7 +172,9 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
     }
     if (sweep_.monte_carlo) rows.push_back(fmt::format("{},{},,,,", mc, noise));
     const SweepOptics& optics = task.optics[i];
-    const LeafOptics leaf = sceneOf(task, optics).kinds[0].leaf[static_cast<std::size_t>(optics.band)];
+    std::vector<LeafOptics> leaf;
+    for (const TreeKind& kind : sceneOf(task, optics).kinds)
+      leaf.push_back(kind.leaf[static_cast<std::size_t>(optics.band)]);
     for (const Model model : sweep_.models) {
       const ModelErrors errors = modelErrors(leafIrradiance(model, geometry, leaf), result.leaf_irradiance, of_depths);
       rows.push_back(fmt::format("{},{},{},{},{},{}", empty, noise, orNothing(errors.rms_category),

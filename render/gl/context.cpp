@@ -73,11 +73,19 @@ EGLDisplay sharedDisplay() {
 }  // namespace
 
 struct Context::State {
-  EGLDisplay display = sharedDisplay();
+  EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
   std::string first_error;
+  std::size_t messages = 0;
 
-  State() {
+  explicit State(Of of) {
+    if (of == Of::its_own)
+      makeOwn();
+    else if (epoxy_gl_version() < 45 || !epoxy_is_desktop_gl())
+      unavailable("the window's is " + std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))));
+  }
+  void makeOwn() {
+    display = sharedDisplay();
     if (!eglBindAPI(EGL_OPENGL_API)) unavailable("EGL has no desktop OpenGL");
     if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context"))
       unavailable("EGL cannot draw without a surface (EGL_KHR_surfaceless_context)");
@@ -103,6 +111,7 @@ struct Context::State {
     }
   }
   ~State() {
+    if (context == EGL_NO_CONTEXT) return;
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
   }
@@ -110,10 +119,12 @@ struct Context::State {
   State& operator=(const State&) = delete;
 };
 
-Context::Context() : state_(std::make_unique<State>()) {
+Context::Context(Of context) : state_(std::make_unique<State>(context)) {
   // The driver calls this from C: it must not throw, so the error waits for requireNoError.
-  const auto remember = [](GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message, const void* user) {
+  const auto remember = [](GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* message,
+                           const void* user) {
     State& state = *static_cast<State*>(const_cast<void*>(user));
+    if (severity != GL_DEBUG_SEVERITY_NOTIFICATION) ++state.messages;
     if (type == GL_DEBUG_TYPE_ERROR && state.first_error.empty()) state.first_error = message;
   };
   glEnable(GL_DEBUG_OUTPUT);
@@ -123,6 +134,10 @@ Context::Context() : state_(std::make_unique<State>()) {
 
 Context::~Context() {
   glDebugMessageCallback(nullptr, nullptr);
+}
+
+std::size_t Context::messages() const {
+  return state_->messages;
 }
 
 std::string Context::renderer() const {

@@ -1,20 +1,25 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
 namespace sunfleck::gl {
 
-// An OpenGL 4.5 core context without a window or a display, current on the thread that made it until it is destroyed.
-// Throws std::runtime_error with one line when the machine offers none.
+// An OpenGL 4.5 core context, current on the thread that made it until it is destroyed: one without a window or a
+// display, or one that a window has made current and keeps. Throws std::runtime_error with one line that names what is
+// needed when the machine offers none.
 class Context {
  public:
-  Context();
+  enum class Of { its_own, the_current };
+  explicit Context(Of context = Of::its_own);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
   std::string renderer() const;  // what draws, as the driver names it
+  // Warnings of the driver and what it calls worth knowing, since this was made; notifications are not counted.
+  std::size_t messages() const;
   // Throws std::runtime_error with the first error the driver has reported since the last call, if any.
   //   work  what was being done, for the message
   void requireNoError(const std::string& work) const;
