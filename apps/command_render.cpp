@@ -30,7 +30,7 @@ struct RenderOptions {
   CameraOptions camera;
   GeometryEffort effort{.light_resolution = 1024};
   std::string model = "sppg", output;
-  float exposure = kExposure;
+  DisplayOptions display;
   int samples = 4;
   float detail = 0.f;
   std::vector<std::string> layers;
@@ -142,7 +142,7 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
     }
   }();
   if (interrupted()) throw std::runtime_error("interrupted");
-  writeImage(options.output, result.image, options.exposure);
+  writeImage(options.output, result.image, options.display.display());
   const char* const maps = result.maps_by_card ? "gpu" : "cpu";
   const char* const visibility = result.visible_by_rays ? "rays" : "raster";
   if (run.json) {
@@ -183,8 +183,7 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
           "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); nstreamg: a better "
           "slab with G-factor")
       ->check(CLI::IsMember({"ss", "spp", "sppg", "nstreamg"}));
-  command->add_option("--exposure", render->exposure, "Factor from radiance to brightness in a .png (default 3)")
-      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
+  addDisplayOptions(*command, render->display);
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
       ->transform(wholeNumberIn(1., 4096., "a whole number, 1 to 4096"));
   command

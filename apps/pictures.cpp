@@ -6,8 +6,8 @@
 
 namespace sunfleck::apps {
 
-Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress) {
-  return gl::scenePicture(scene, stand, {.model = model, .exact = exactPowerTable}, progress);
+Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress, int samples) {
+  return gl::scenePicture(scene, stand, {.model = model, .samples = samples, .exact = exactPowerTable}, progress);
 }
 
 void showGround(Scene& scene) {

@@ -2,6 +2,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "apps/display_options.hpp"
 #include "core/image.hpp"
 #include "render/leaf_models.hpp"
 #include "render/scene.hpp"
@@ -9,13 +10,12 @@
 
 namespace sunfleck::apps {
 
-// Brings a leaf in full sun to about the middle of the display's range.
-inline constexpr float kExposure = 3.f;
-
 // Lets a picture stand on a ground that shows its shadows: one that reflects a sixth of the light.
 void showGround(Scene& scene);
 
 // The scene shaded by a model on the GPU; `stand` is up to date for it and the model.
-Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress = {});
+//   samples  of each pixel
+Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress = {},
+                   int samples = 4);
 
 }  // namespace sunfleck::apps

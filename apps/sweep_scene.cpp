@@ -16,6 +16,7 @@
 #include "render/compare/exact_powers.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
+#include "render/radians.hpp"
 #include "render/reference/trace_goal.hpp"
 #include "render/scene_file.hpp"
 
@@ -81,8 +82,8 @@ SweepScene::SweepScene(const SweepFile& sweep, std::size_t scene, std::uint64_t 
 // The scene in one row. Optics stand in the band that they are of.
 Scene SweepScene::sceneOf(const SweepTask& task, const SweepOptics& optics) const {
   Scene scene = scene_;
-  if (task.sun.zenith_deg) scene.suns.front().zenith = glm::radians(static_cast<float>(*task.sun.zenith_deg));
-  if (task.sun.azimuth_deg) scene.suns.front().azimuth = glm::radians(static_cast<float>(*task.sun.azimuth_deg));
+  if (task.sun.zenith_deg) scene.suns.front().zenith = radiansOf(*task.sun.zenith_deg);
+  if (task.sun.azimuth_deg) scene.suns.front().azimuth = radiansOf(*task.sun.azimuth_deg);
   for (TreeKind& kind : scene.kinds) {
     if (optics.leaf) kind.leaf[static_cast<std::size_t>(optics.band)] = *optics.leaf;
     if (optics.wood_reflectance) kind.wood_reflectance[optics.band] = *optics.wood_reflectance;
