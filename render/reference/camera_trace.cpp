@@ -71,7 +71,8 @@ struct CameraJob::Parts {
         samples_per_unit(samples),
         followed(until),
         optics(bands, scene),
-        light(bands) {
+        light(bands),
+        shadows(scene, light.toSun()) {
     rays.corner -= scene.origin;
   }
 
@@ -107,6 +108,7 @@ struct CameraJob::Parts {
   Followed followed;
   AnyLanes optics;
   SceneLight light;
+  ParallelShadows shadows;  // of the sun
 };
 
 CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays, float ground_height,
@@ -155,7 +157,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
   const int band_count = static_cast<int>(parts_->bands.size());
   const double share = 1. / samples, share_of_tile = share / tile.pixels();
   parts_->optics.visit([&](const auto& optics) {
-    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->ground, parts_->followed);
+    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->shadows, parts_->ground, parts_->followed);
     using Lanes = std::remove_cvref_t<decltype(optics.ground().reflectance)>;
     Packet<Lanes::kBands> packet;
     const auto finish = [&] {

@@ -7,6 +7,7 @@
 #include "core/require.hpp"
 #include "render/reference/detail/identity_text.hpp"
 #include "render/reference/detail/incident_light.hpp"
+#include "render/reference/detail/parallel_shadows.hpp"
 #include "render/reference/detail/pixel_of_point.hpp"
 #include "render/reference/detail/scene_optics.hpp"
 #include "render/reference/trace_effort.hpp"
@@ -24,8 +25,16 @@ class PicturePaths {
   //   share  of the incident light that a path starts with, by the area of a pixel's beam [1/m^2]
   //   flux   of each band's incident light [m^2]
   PicturePaths(const RayScene::Geometry& scene, const IncidentLight& light, const SceneOptics<N>& optics,
-               const PixelOfPoint& pixels, const Direction& to_eye, double share, std::size_t bands, UnitTally& tally)
-      : scene_(scene), light_(light), optics_(optics), pixels_(pixels), to_eye_(to_eye), bands_(bands), tally_(tally) {
+               const PixelOfPoint& pixels, const ParallelShadows& shadows, double share, std::size_t bands,
+               UnitTally& tally)
+      : scene_(scene),
+        light_(light),
+        optics_(optics),
+        pixels_(pixels),
+        shadows_(shadows),
+        to_eye_(shadows.to()),
+        bands_(bands),
+        tally_(tally) {
     for (std::size_t band = 0; band < bands; ++band)
       flux_[static_cast<int>(band)] = static_cast<float>(share * light.flux(static_cast<int>(band)));
   }
@@ -54,7 +63,7 @@ class PicturePaths {
     if (!(radiance.largest() > 0.f)) return;
     const glm::vec3 side = glm::dot(hit.normal, to_eye_) > 0.f ? hit.normal : -hit.normal;
     const glm::vec3 from = scene_.leave(hit.position, side);
-    if (scene_.blocked(from, to_eye_)) return;
+    if (shadows_.blocked(from)) return;
     if (!scene_.media.empty()) radiance *= scene_.transmittance(from, to_eye_);
     radiance *= flux_;
     for (std::size_t band = 0; band < bands_; ++band)
@@ -65,7 +74,8 @@ class PicturePaths {
   const IncidentLight& light_;
   const SceneOptics<N>& optics_;
   const PixelOfPoint& pixels_;
-  Direction to_eye_;
+  const ParallelShadows& shadows_;  // what hides from the eye
+  glm::vec3 to_eye_;
   BandLanes<N> flux_;  // of a path, by the area of a pixel's beam [1]
   std::size_t bands_;
   UnitTally& tally_;
@@ -80,7 +90,8 @@ struct LightPictureJob::Parts {
         rays(of_rays),
         paths_per_unit(per_unit),
         light(scene, bands),
-        optics(bands, scene) {
+        optics(bands, scene),
+        shadows(scene, -of_rays.sight) {
     rays.corner -= scene.origin;
   }
   std::size_t pixels() const { return static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height); }
@@ -91,6 +102,7 @@ struct LightPictureJob::Parts {
   std::uint64_t paths_per_unit;
   IncidentLight light;
   AnyLanes optics;
+  ParallelShadows shadows;
 };
 
 bool LightPictureJob::suits(const RayScene& scene, const std::vector<TraceLight>& bands, const PixelRays& rays) {
@@ -143,7 +155,7 @@ void LightPictureJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& t
   const std::uint64_t count = parts_->paths_per_unit;
   const PixelOfPoint pixels(parts_->rays);
   parts_->optics.visit([&](const auto& optics) {
-    PicturePaths paths(parts_->scene, parts_->light, optics, pixels, -parts_->rays.sight,
+    PicturePaths paths(parts_->scene, parts_->light, optics, pixels, parts_->shadows,
                        1. / (static_cast<double>(count) * pixels.beam()), parts_->bands.size(), tally);
     const EvenSet set(Stream::light_picture, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {

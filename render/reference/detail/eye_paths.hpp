@@ -6,6 +6,7 @@
 #include <span>
 
 #include "render/reference/camera_trace.hpp"
+#include "render/reference/detail/parallel_shadows.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/detail/scene_light.hpp"
@@ -30,12 +31,14 @@ struct Seen {
 template <int N>
 class EyePaths {
  public:
-  //   ground  height of the ground about the scene's origin [m]; none if it is black in all bands
-  EyePaths(const RayScene::Geometry& scene, const SceneOptics<N>& optics, const SceneLight& light, float ground,
-           Followed followed = Followed::all)
+  //   shadows  of the sun
+  //   ground   height of the ground about the scene's origin [m]; none if it is black in all bands
+  EyePaths(const RayScene::Geometry& scene, const SceneOptics<N>& optics, const SceneLight& light,
+           const ParallelShadows& shadows, float ground, Followed followed = Followed::all)
       : scene_(scene),
         optics_(optics),
         light_(light),
+        shadows_(shadows),
         point_sun_(light.pointSun()),
         wide_(light.wide()),
         followed_(followed),
@@ -62,7 +65,7 @@ class EyePaths {
       seen[i] = {};
       dark[i] = !meets(hits[i], from[i], sight, to_ground[i]) || !sendsSun(hits[i], lit[i]);
     }
-    scene_.blocked(std::span(lit).first(count), to_sun_, std::span(dark).first(count));
+    shadows_.blocked(std::span(lit).first(count), std::span(dark).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       if (!meets(hits[i], from[i], sight, to_ground[i])) {
         if (wide_) seen[i].light = light_.met<N>(sight, kInfinity);
@@ -142,7 +145,7 @@ class EyePaths {
       }
       if (followed_ == Followed::once) return;
       glm::vec3 lit;
-      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, direction, lit, weight, seen.more);
+      if (sendsSun(hit, lit) && !shadows_.blocked(lit)) addSun(hit, direction, lit, weight, seen.more);
       if (wide_) addDrawn(hit, direction, weight, random, seen.more);
     }
   }
@@ -191,6 +194,7 @@ class EyePaths {
   const RayScene::Geometry& scene_;
   const SceneOptics<N>& optics_;
   const SceneLight& light_;
+  const ParallelShadows& shadows_;
   bool point_sun_, wide_;  // of the light
   Followed followed_;
   Direction to_sun_;
