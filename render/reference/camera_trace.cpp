@@ -72,8 +72,11 @@ struct CameraJob::Parts {
         followed(until),
         optics(bands, scene),
         light(bands),
-        shadows(scene, light.toSun()) {
+        shadows(scene, light.toSun()),
+        before_eye(scene, -of_rays.sight) {
     rays.corner -= scene.origin;
+    black_beyond = scene.media.empty() && !light.wide() &&
+                   std::ranges::none_of(bands, [](const auto& b) { return b.largestGroundAlbedo() > 0.f; });
   }
 
   int tilesAcross() const { return (rays.width + kTileSide - 1) / kTileSide; }
@@ -97,6 +100,14 @@ struct CameraJob::Parts {
     return tiles() * bands.size() + 2 * (number * bands.size() + static_cast<std::size_t>(band));
   }
 
+  // Whether there is surely neither a tree nor anything else.
+  bool seesNothing(int x, int y) const {
+    if (!black_beyond) return false;
+    const glm::vec3 corner =
+        rays.corner + static_cast<float>(x) * rays.right_step + static_cast<float>(y) * rays.down_step;
+    return before_eye.nothingThrough(corner, rays.right_step, rays.down_step);
+  }
+
   CameraResult result(const TraceSums& sums, int band) const;
   std::vector<double> wanted(double target, const TraceSums& sums) const;  // units of each tile, see unitsFor
 
@@ -108,7 +119,9 @@ struct CameraJob::Parts {
   Followed followed;
   AnyLanes optics;
   SceneLight light;
-  ParallelShadows shadows;  // of the sun
+  ParallelShadows shadows;     // of the sun
+  bool black_beyond;           // the trees
+  ParallelShadows before_eye;  // tells pixels that see nothing
 };
 
 CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays, float ground_height,
@@ -179,6 +192,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
     std::uint64_t pixel_of_run = unit * kTileSide * kTileSide;
     for (int y = tile.top; y < tile.bottom; ++y)
       for (int x = tile.left; x < tile.right && !stopped.load(std::memory_order_relaxed); ++x, ++pixel_of_run) {
+        if (parts_->seesNothing(x, y)) continue;
         const EvenSet set(Stream::picture, seed, pixel_of_run);
         for (std::uint32_t i = 0; i < samples; ++i) {
           PathRandom random(set, pixel_of_run * samples + i, i);

@@ -44,8 +44,9 @@ class PicturePaths {
     for (int scatterings = 0; scatterings < kMostScatterings; ++scatterings) {
       const Hit hit = scene_.meet(from, direction, random);
       if (hit.surface == Surface::none) return;
-      if (scatterings > 0) show(hit, direction, weight);
+      const std::optional<Sent> sent = scatterings > 0 ? send(hit, direction, weight) : std::nullopt;
       const Onward onward = optics_.scatter(hit, direction, weight, random);
+      if (sent) show(*sent);
       if (onward.fate == Fate::absorbed) return;
       from = scene_.leave(hit.position, onward.side);
       direction = onward.direction;
@@ -53,21 +54,31 @@ class PicturePaths {
   }
 
  private:
+  // What goes to the camera of the light that a path brings to a surface.
+  struct Sent {
+    std::size_t pixel;
+    BandLanes<N> radiance;
+    ParallelShadows::Point from;
+  };
+
   // With flux F arriving, what is met sends F f cos per solid angle to the camera, the BRDF or BTDF f being the same
   // both ways: over the area of the pixel's beam, its radiance.
-  void show(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight) {
+  std::optional<Sent> send(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight) const {
     const std::optional<std::size_t> pixel = pixels_.number(hit.position);
-    if (!pixel) return;
+    if (!pixel) return std::nullopt;
     BandLanes<N> radiance = optics_.sent(hit, direction, to_eye_);
     radiance *= weight;
-    if (!(radiance.largest() > 0.f)) return;
-    const glm::vec3 side = glm::dot(hit.normal, to_eye_) > 0.f ? hit.normal : -hit.normal;
-    const glm::vec3 from = scene_.leave(hit.position, side);
-    if (shadows_.blocked(from)) return;
-    if (!scene_.media.empty()) radiance *= scene_.transmittance(from, to_eye_);
+    if (!(radiance.largest() > 0.f)) return std::nullopt;
     radiance *= flux_;
+    const glm::vec3 side = glm::dot(hit.normal, to_eye_) > 0.f ? hit.normal : -hit.normal;
+    return Sent{*pixel, radiance, shadows_.fetch(scene_.leave(hit.position, side))};
+  }
+
+  void show(Sent sent) {
+    if (shadows_.blocked(sent.from)) return;
+    if (!scene_.media.empty()) sent.radiance *= scene_.transmittance(sent.from.from, to_eye_);
     for (std::size_t band = 0; band < bands_; ++band)
-      tally_.add(*pixel * bands_ + band, double{radiance[static_cast<int>(band)]});
+      tally_.add(sent.pixel * bands_ + band, double{sent.radiance[static_cast<int>(band)]});
   }
 
   const RayScene::Geometry& scene_;

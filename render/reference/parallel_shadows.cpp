@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "core/instruction_set.hpp"
+
 namespace sunfleck::detail {
 namespace {
 
@@ -48,7 +50,16 @@ struct Outline {
 
 }  // namespace
 
-ParallelShadows::ParallelShadows(const RayScene::Geometry& scene, const glm::vec3& to) : scene_(scene), to_(to) {
+BeforeFacet* beforeFacet() {
+#ifdef SUNFLECK_X86
+  return &bestOf<BeforeFacet>({&baseline::beforeFacet, &avx2::beforeFacet, &avx512::beforeFacet});
+#else
+  return &bestOf<BeforeFacet>({&baseline::beforeFacet});
+#endif
+}
+
+ParallelShadows::ParallelShadows(const RayScene::Geometry& scene, const glm::vec3& to)
+    : scene_(scene), to_(to), before_facet_(beforeFacet()) {
   const Axes axes = axesAlong(to);
   along_ = glm::normalize(glm::dvec3(axes.along));
   right_ = glm::normalize(glm::dvec3(axes.right) - glm::dot(glm::dvec3(axes.right), along_) * along_);
@@ -90,7 +101,7 @@ ParallelShadows::ParallelShadows(const RayScene::Geometry& scene, const glm::vec
   for (const auto& list : lists) {
     const auto count = static_cast<double>(list.size());
     listed += count;
-    read += count * std::ceil(count / Block::kSize);
+    read += count * std::ceil(count / FacetBlock::kSize);
   }
   if (read <= kMostBlocksRead * listed) fill(*facets, lists);
 }
@@ -107,7 +118,7 @@ void ParallelShadows::fill(const std::vector<Facet>& facets, std::vector<std::ve
     const glm::dvec3 middle = (low_x_ + (static_cast<double>(cell % across_) + 0.5) * cell_) * right_ +
                               (low_y_ + (static_cast<double>(cell / across_) + 0.5) * cell_) * up_;
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::size_t lane = i % Block::kSize;
+      const std::size_t lane = i % FacetBlock::kSize;
       if (lane == 0) blocks_.emplace_back().u.fill(-1.f);  // a lane of no facet
       set(blocks_.back(), lane, facets[list[i]], middle);
     }
@@ -115,7 +126,7 @@ void ParallelShadows::fill(const std::vector<Facet>& facets, std::vector<std::ve
   first_.push_back(static_cast<std::uint32_t>(blocks_.size()));
 }
 
-void ParallelShadows::set(Block& block, std::size_t lane, const Facet& facet, const glm::dvec3& middle) const {
+void ParallelShadows::set(FacetBlock& block, std::size_t lane, const Facet& facet, const glm::dvec3& middle) const {
   const glm::dvec3 across = glm::cross(facet.first, facet.second);
   const double seen = glm::dot(across, along_);  // its area as it is seen, twice that of a triangle
   const double area = glm::length(across);
@@ -124,7 +135,7 @@ void ParallelShadows::set(Block& block, std::size_t lane, const Facet& facet, co
   const glm::dvec3 u = glm::cross(facet.second, along_) / seen, v = glm::cross(along_, facet.first) / seen;
   const glm::dvec3 normal = across / std::copysign(area, seen);
   const glm::dvec3 from = middle - facet.corner;
-  const auto put = [&](Block::Lanes& lanes, double value) { lanes[lane] = static_cast<float>(value); };
+  const auto put = [&](FacetBlock::Lanes& lanes, double value) { lanes[lane] = static_cast<float>(value); };
   put(block.u, glm::dot(u, from));
   put(block.u_x, glm::dot(u, right_));
   put(block.u_y, glm::dot(u, up_));
@@ -138,28 +149,44 @@ void ParallelShadows::set(Block& block, std::size_t lane, const Facet& facet, co
   put(block.parallelogram, facet.parallelogram ? 1. : 0.);
 }
 
-bool ParallelShadows::blocked(const glm::vec3& from) const {
-  if (blocks_.empty()) return scene_.blocked(from, to_);
+ParallelShadows::Point ParallelShadows::fetch(const glm::vec3& from) const {
+  Point asked{.from = from};
+  if (blocks_.empty()) return asked;
   const glm::dvec3 point(from);
   const double right = (glm::dot(point, right_) - low_x_) * per_cell_, up = (glm::dot(point, up_) - low_y_) * per_cell_;
-  if (!(right >= 0. && up >= 0. && right < across_ && up < down_)) return false;
+  if (!(right >= 0. && up >= 0. && right < across_ && up < down_)) return asked;
   const auto column = static_cast<std::uint32_t>(right), row = static_cast<std::uint32_t>(up);
-  const auto x = static_cast<float>((right - column - 0.5) * cell_), y = static_cast<float>((up - row - 0.5) * cell_),
-             z = static_cast<float>(glm::dot(point, along_));
   const std::uint32_t* cell = &first_[std::size_t{row} * across_ + column];
-  for (std::uint32_t i = cell[0]; i < cell[1]; ++i) {
-    const Block& of = blocks_[i];
-    int any = 0;
-    for (std::size_t k = 0; k < Block::kSize; ++k) {
-      const float u = of.u[k] + x * of.u_x[k] + y * of.u_y[k], v = of.v[k] + x * of.v_x[k] + y * of.v_y[k];
-      const float side = of.side[k] + x * of.side_x[k] + y * of.side_y[k] + z * of.side_z[k];
-      const float least = std::min(u, v);
-      any |= static_cast<int>(least >= 0.f) & static_cast<int>(u + v - of.parallelogram[k] * least <= 1.f) &
-             static_cast<int>(side < 0.f);
-    }
-    if (any != 0) return true;
+  asked.first = blocks_.data() + cell[0];
+  asked.last = blocks_.data() + cell[1];
+  asked.x = static_cast<float>((right - column - 0.5) * cell_);
+  asked.y = static_cast<float>((up - row - 0.5) * cell_);
+  asked.z = static_cast<float>(glm::dot(point, along_));
+  if (asked.first != asked.last)
+    for (std::size_t line = 0; line < sizeof(FacetBlock); line += 64)
+      __builtin_prefetch(reinterpret_cast<const char*>(asked.first) + line);
+  return asked;
+}
+
+bool ParallelShadows::nothingThrough(const glm::vec3& corner, const glm::vec3& first, const glm::vec3& second) const {
+  if (blocks_.empty()) return false;
+  glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;  // [cell]
+  for (const glm::dvec3& point :
+       {glm::dvec3(corner), glm::dvec3(corner) + glm::dvec3(first), glm::dvec3(corner) + glm::dvec3(second),
+        glm::dvec3(corner) + glm::dvec3(first) + glm::dvec3(second)}) {
+    const glm::dvec2 at((glm::dot(point, right_) - low_x_) * per_cell_, (glm::dot(point, up_) - low_y_) * per_cell_);
+    low = glm::min(low, at);
+    high = glm::max(high, at);
   }
-  return false;
+  // Cells list what comes within a thousandth of a cell: rounding of the lines is much less.
+  const auto first_of = [](double place, std::uint32_t count) {
+    return static_cast<std::uint32_t>(std::clamp(std::floor(place), 0., static_cast<double>(count)));
+  };
+  const std::uint32_t left = first_of(low.x, across_), right = first_of(high.x + 1., across_);
+  for (std::uint32_t row = first_of(low.y, down_); row < first_of(high.y + 1., down_); ++row)
+    if (left < right && first_[std::size_t{row} * across_ + left] != first_[std::size_t{row} * across_ + right])
+      return false;
+  return true;
 }
 
 void ParallelShadows::blocked(std::span<const glm::vec3> from, std::span<bool> is_blocked) const {

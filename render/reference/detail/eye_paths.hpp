@@ -130,10 +130,9 @@ class EyePaths {
   // Follows a path on from where it met something, travelling along `direction`, and adds what it sees there.
   void goOn(Hit hit, glm::vec3 direction, BandLanes<N> weight, PathRandom& random, Seen<N>& seen) const {
     const Surface first = hit.surface;
-    for (int scatterings = 1; scatterings < kMostScatterings; ++scatterings) {
-      const BandLanes<N> arriving = weight;
-      const Onward onward = optics_.scatter(hit, direction, weight, random);
-      if (onward.fate == Fate::absorbed) return;
+    BandLanes<N> arriving = weight;
+    Onward onward = optics_.scatter(hit, direction, weight, random);
+    for (int scatterings = 1; scatterings < kMostScatterings && onward.fate != Fate::absorbed; ++scatterings) {
       const float density = wide_ ? optics_.density(hit, direction, arriving, onward.direction) : 0.f;
       const glm::vec3 from = scene_.leave(hit.position, onward.side);
       direction = onward.direction;
@@ -145,8 +144,12 @@ class EyePaths {
       }
       if (followed_ == Followed::once) return;
       glm::vec3 lit;
-      if (sendsSun(hit, lit) && !shadows_.blocked(lit)) addSun(hit, direction, lit, weight, seen.more);
+      const bool sends = sendsSun(hit, lit);
+      const ParallelShadows::Point point = sends ? shadows_.fetch(lit) : ParallelShadows::Point{};
       if (wide_) addDrawn(hit, direction, weight, random, seen.more);
+      arriving = weight;
+      onward = optics_.scatter(hit, direction, weight, random);
+      if (sends && !shadows_.blocked(point)) addSun(hit, direction, lit, arriving, seen.more);
     }
   }
 

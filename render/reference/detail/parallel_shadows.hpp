@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -8,11 +7,12 @@
 #include <vector>
 
 #include "core/directions.hpp"
+#include "render/reference/detail/facet_block.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 
 namespace sunfleck::detail {
 
-// (R24) Whether anything stands between points and what is far away in one direction, the sun or the eye: a grid across
+// Whether anything stands between points and what is far away in one direction, the sun or the eye: a grid across
 // that direction, whose cells list the facets that a line through them may meet. So most questions take the tests of 16
 // facets side by side, a quarter of Embree's time. Embree is asked where there are too many facets, where they lie so
 // that lists get long, where masks cut leaves and in periodic stands.
@@ -22,24 +22,30 @@ class ParallelShadows {
   //   to     unit vector to what is far away
   ParallelShadows(const RayScene::Geometry& scene, const glm::vec3& to);
 
+  // A point that is asked for. What the answer takes is fetched from memory while the caller does something else.
+  struct Point {
+    glm::vec3 from{0.f};
+    const FacetBlock *first = nullptr, *last = nullptr;
+    float x = 0.f, y = 0.f, z = 0.f;
+  };
+  Point fetch(const glm::vec3& from) const;
   // As Geometry's, along `to`, but for lines that pass an edge within rounding.
-  bool blocked(const glm::vec3& from) const;
+  bool blocked(const Point& point) const {
+    if (blocks_.empty()) return scene_.blocked(point.from, to_);
+    return before_facet_(point.first, point.last, point.x, point.y, point.z);
+  }
+  bool blocked(const glm::vec3& from) const { return blocked(fetch(from)); }
   void blocked(std::span<const glm::vec3> from, std::span<bool> blocked) const;
+
+  // Whether no line through the parallelogram at `corner` meets anything, as far as the grid can tell.
+  bool nothingThrough(const glm::vec3& corner, const glm::vec3& first, const glm::vec3& second) const;
 
   const glm::vec3& to() const { return to_; }
   bool asksEmbree() const { return blocks_.empty(); }
 
  private:
-  // With x, y and z along the axes from the cell's middle, the grid's plane: a line meets the facet where 0 <= u, v and
-  // u + v - min(u, v) [if a parallelogram] <= 1; the point is before it where its side is below 0.
-  struct alignas(64) Block {
-    static constexpr std::size_t kSize = 16;
-    using Lanes = std::array<float, kSize>;
-    Lanes u, u_x, u_y, v, v_x, v_y, side, side_x, side_y, side_z, parallelogram;
-  };
-
   void fill(const std::vector<Facet>& facets, std::vector<std::vector<std::uint32_t>>& lists);
-  void set(Block& block, std::size_t lane, const Facet& facet, const glm::dvec3& middle) const;
+  void set(FacetBlock& block, std::size_t lane, const Facet& facet, const glm::dvec3& middle) const;
 
   const RayScene::Geometry& scene_;
   glm::vec3 to_;
@@ -47,7 +53,8 @@ class ParallelShadows {
   double low_x_ = 0., low_y_ = 0., cell_ = 1., per_cell_ = 1.;
   std::uint32_t across_ = 0, down_ = 0;  // cells
   std::vector<std::uint32_t> first_;     // block of each cell, and the end
-  std::vector<Block> blocks_;
+  std::vector<FacetBlock> blocks_;
+  BeforeFacet* before_facet_;
 };
 
 }  // namespace sunfleck::detail
