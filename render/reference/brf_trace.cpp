@@ -27,7 +27,8 @@ struct BrfJob::Parts {
         views(std::move(of_views)),
         paths_per_unit(per_unit),
         optics(bands, scene),
-        light(bands) {
+        light(bands),
+        shadows(scene, light.toSun()) {
     for (const ViewDirection& view : views)
       sights.push_back(sunlight(static_cast<float>(view.zenith), static_cast<float>(view.azimuth)));
     for (const TraceLight& band : bands)
@@ -59,6 +60,7 @@ struct BrfJob::Parts {
   std::uint64_t paths_per_unit;
   AnyLanes optics;
   SceneLight light;
+  ParallelShadows shadows;         // of the sun
   std::vector<double> irradiance;  // of a horizontal plane, of each band [1]
 };
 
@@ -107,7 +109,7 @@ void BrfJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, con
   const std::uint64_t group = unit % groups(), count = parts_->paths_per_unit;
   const bool drawn = group == parts_->views.size();
   parts_->optics.visit([&](const auto& optics) {
-    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->scene.low);
+    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->shadows, parts_->scene.low);
     const EvenSet set(Stream::reflectance, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
       PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));

@@ -81,8 +81,12 @@ struct CameraJob::Parts {
         samples_per_unit(samples),
         followed(until),
         optics(bands, scene),
-        light(bands) {
+        light(bands),
+        shadows(scene, light.toSun()) {
     (rays.eye ? *rays.eye : rays.corner) -= scene.origin;
+    const bool black_beyond = scene.media.empty() && !light.wide() &&
+                              std::ranges::none_of(bands, [](const auto& b) { return b.largestGroundAlbedo() > 0.f; });
+    if (black_beyond && !rays.eye) before_eye.emplace(scene, -of_rays.sight);
   }
 
   int tilesAcross() const { return (rays.width + kTileSide - 1) / kTileSide; }
@@ -109,6 +113,14 @@ struct CameraJob::Parts {
   std::uint64_t pathsOf(std::uint64_t tile_number) const {  // of a unit
     return static_cast<std::uint64_t>(tile(tile_number).pixels()) * static_cast<std::uint64_t>(samples_per_unit);
   }
+  // Whether there is surely neither a tree nor anything else.
+  bool seesNothing(int x, int y) const {
+    if (!before_eye) return false;
+    const glm::vec3 corner =
+        rays.corner + static_cast<float>(x) * rays.right_step + static_cast<float>(y) * rays.down_step;
+    return before_eye->nothingThrough(corner, rays.right_step, rays.down_step);
+  }
+
   void setPixels(CameraResult& result, const TraceSums& sums, std::uint64_t tile_number, int band) const;
   CameraResult result(const TraceSums& sums, int band) const;
   std::vector<double> wanted(double target, const TraceSums& sums) const;  // units of each tile, see unitsFor
@@ -121,6 +133,8 @@ struct CameraJob::Parts {
   Followed followed;
   AnyLanes optics;
   SceneLight light;
+  ParallelShadows shadows;                    // of the sun
+  std::optional<ParallelShadows> before_eye;  // tells pixels that see nothing, where all is black beyond the trees
 };
 
 CameraJob::CameraJob(const RayScene& scene, std::vector<TraceLight> bands, const PixelRays& rays, float ground_height,
@@ -169,7 +183,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
   const int band_count = static_cast<int>(parts_->bands.size());
   const double share = 1. / samples, share_of_tile = share / tile.pixels();
   parts_->optics.visit([&](const auto& optics) {
-    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->ground, parts_->followed);
+    const EyePaths paths(parts_->scene, optics, parts_->light, parts_->shadows, parts_->ground, parts_->followed);
     using Lanes = std::remove_cvref_t<decltype(optics.ground().reflectance)>;
     Packet<Lanes::kBands> packet;
     const auto finish = [&] {
@@ -191,6 +205,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
     std::uint64_t pixel_of_run = unit * kTileSide * kTileSide;
     for (int y = tile.top; y < tile.bottom; ++y)
       for (int x = tile.left; x < tile.right && !stopped.load(std::memory_order_relaxed); ++x, ++pixel_of_run) {
+        if (parts_->seesNothing(x, y)) continue;
         const EvenSet set(Stream::picture, seed, pixel_of_run);
         for (std::uint32_t i = 0; i < samples; ++i) {
           PathRandom random(set, pixel_of_run * samples + i, i);

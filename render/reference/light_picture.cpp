@@ -7,6 +7,7 @@
 #include "core/require.hpp"
 #include "render/reference/detail/identity_text.hpp"
 #include "render/reference/detail/incident_light.hpp"
+#include "render/reference/detail/parallel_shadows.hpp"
 #include "render/reference/detail/pixel_of_point.hpp"
 #include "render/reference/detail/scene_optics.hpp"
 #include "render/reference/trace_effort.hpp"
@@ -46,8 +47,15 @@ class PicturePaths {
   //   share  of the incident light that a path starts with, by the area of a pixel's beam [1/m^2]
   //   flux   of each band's incident light [m^2]
   PicturePaths(const RayScene::Geometry& scene, const IncidentLight& light, const SceneOptics<N>& optics,
-               const PixelOfPoint& pixels, double share, std::size_t bands, UnitTally& tally)
-      : scene_(scene), light_(light), optics_(optics), pixels_(pixels), bands_(bands), tally_(tally) {
+               const PixelOfPoint& pixels, const std::optional<ParallelShadows>& shadows, double share,
+               std::size_t bands, UnitTally& tally)
+      : scene_(scene),
+        light_(light),
+        optics_(optics),
+        pixels_(pixels),
+        shadows_(shadows),
+        bands_(bands),
+        tally_(tally) {
     for (std::size_t band = 0; band < bands; ++band)
       flux_[static_cast<int>(band)] = static_cast<float>(share * light.flux(static_cast<int>(band)));
   }
@@ -57,8 +65,9 @@ class PicturePaths {
     for (int scatterings = 0; scatterings < kMostScatterings; ++scatterings) {
       const Hit hit = scene_.meet(from, direction, random);
       if (hit.surface == Surface::none) return;
-      if (scatterings > 0) show(hit, direction, weight);
+      const std::optional<Sent> sent = scatterings > 0 ? send(hit, direction, weight) : std::nullopt;
       const Onward onward = optics_.scatter(hit, direction, weight, random);
+      if (sent) show(*sent);
       if (onward.fate == Fate::absorbed) return;
       from = scene_.leave(hit.position, onward.side);
       direction = onward.direction;
@@ -66,32 +75,56 @@ class PicturePaths {
   }
 
  private:
+  // What goes to the camera of the light that a path brings to a surface.
+  struct Sent {
+    std::size_t pixel;
+    BandLanes<N> radiance;
+    ParallelShadows::Point from;
+  };
+
   // With flux F arriving, what is met sends F f cos per solid angle to the camera, the BRDF or BTDF f being the same
   // both ways: over the area of the pixel's beam, its radiance.
-  void show(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight) {
+  // What goes to the camera of the light that a path brings to a surface.
+  struct Sent {
+    std::size_t pixel;
+    BandLanes<N> radiance;
+    Direction to_eye;
+    ParallelShadows::Point from;
+  };
+
+  // With flux F arriving, what is met sends F f cos per solid angle to the camera, the BRDF or BTDF f being the same
+  // both ways: over the area of the pixel's beam, its radiance.
+  std::optional<Sent> send(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight) const {
     const std::optional<PixelOfPoint::Seen> seen = pixels_.seen(hit.position);
-    if (!seen) return;
-    const Direction& to_eye = seen->to_eye;
-    BandLanes<N> radiance = optics_.sent(hit, direction, to_eye);
+    if (!seen) return std::nullopt;
+    BandLanes<N> radiance = optics_.sent(hit, direction, seen->to_eye);
     radiance *= weight;
-    if (!(radiance.largest() > 0.f)) return;
-    const glm::vec3 side = glm::dot(hit.normal, to_eye) > 0.f ? hit.normal : -hit.normal;
-    const glm::vec3 from = scene_.leave(hit.position, side);
-    if (scene_.blocked(from, to_eye)) return;
-    if (!scene_.media.empty()) radiance *= scene_.transmittance(from, to_eye);
+    if (!(radiance.largest() > 0.f)) return std::nullopt;
     radiance *= flux_;
     radiance *= 1.f / seen->beam;
-    for (std::size_t band = 0; band < bands_; ++band)
-      tally_.add(seen->pixel * bands_ + band, double{radiance[static_cast<int>(band)]});
+    const glm::vec3 side = glm::dot(hit.normal, seen->to_eye) > 0.f ? hit.normal : -hit.normal;
+    const glm::vec3 from = scene_.leave(hit.position, side);
+    return Sent{seen->pixel, radiance, seen->to_eye,
+                shadows_ ? shadows_->fetch(from) : ParallelShadows::Point{.from = from}};
   }
 
-  const RayScene::Geometry& scene_;
-  const IncidentLight& light_;
-  const SceneOptics<N>& optics_;
-  const PixelOfPoint& pixels_;
-  BandLanes<N> flux_;  // of a path, by the area of a pixel's beam [1]
-  std::size_t bands_;
-  UnitTally& tally_;
+  void show(Sent sent) {
+    const glm::vec3& from = sent.from.from;
+    if (shadows_ ? shadows_->blocked(sent.from) : scene_.blocked(from, sent.to_eye)) return;
+    if (!scene_.media.empty()) sent.radiance *= scene_.transmittance(from, sent.to_eye);
+    for (std::size_t band = 0; band < bands_; ++band)
+      tally_.add(sent.pixel * bands_ + band, double{sent.radiance[static_cast<int>(band)]});
+  }
+}
+
+const RayScene::Geometry& scene_;
+const IncidentLight& light_;
+const SceneOptics<N>& optics_;
+const PixelOfPoint& pixels_;
+const std::optional<ParallelShadows>& shadows_;  // what hides from the eye, where lines of sight are parallel
+BandLanes<N> flux_;                              // of a path, by the area of a pixel's beam [1]
+std::size_t bands_;
+UnitTally& tally_;
 };
 
 }  // namespace
@@ -105,6 +138,7 @@ struct LightPictureJob::Parts {
         light(scene, bands),
         optics(bands, scene) {
     (rays.eye ? *rays.eye : rays.corner) -= scene.origin;
+    if (!rays.eye) shadows.emplace(scene, -of_rays.sight);
   }
   std::size_t pixels() const { return static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height); }
 
@@ -114,6 +148,7 @@ struct LightPictureJob::Parts {
   std::uint64_t paths_per_unit;
   IncidentLight light;
   AnyLanes optics;
+  std::optional<ParallelShadows> shadows;
 };
 
 bool LightPictureJob::suits(const RayScene& scene, const std::vector<TraceLight>& bands, const PixelRays& rays) {
@@ -162,8 +197,8 @@ void LightPictureJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& t
   const std::uint64_t count = parts_->paths_per_unit;
   const PixelOfPoint pixels(parts_->rays);
   parts_->optics.visit([&](const auto& optics) {
-    PicturePaths paths(parts_->scene, parts_->light, optics, pixels, 1. / (static_cast<double>(count) * pixels.beam()),
-                       parts_->bands.size(), tally);
+    PicturePaths paths(parts_->scene, parts_->light, optics, pixels, parts_->shadows,
+                       1. / (static_cast<double>(count) * pixels.beam()), parts_->bands.size(), tally);
     const EvenSet set(Stream::light_picture, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
       PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <tuple>
 
 #include "core/require.hpp"
+#include "render/reference/detail/primitives.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 
 namespace sunfleck {
@@ -15,7 +15,6 @@ using namespace detail;
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr unsigned kLeaves = 0, kWood = 1;  // Embree's geometry numbers
 
 void keepFirstError(void* text, RTCError code, const char* message) {
   std::string& error = *static_cast<std::string*>(text);
@@ -35,18 +34,21 @@ void passCutLeaves(const RTCFilterFunctionNArguments* arguments) {
 }
 
 // `cuts`: none where the triangles are whole.
-void attachTriangles(RTCDevice device, RTCScene scene, unsigned number, const std::vector<glm::vec3>& vertices,
-                     const std::vector<glm::uvec3>& triangles, const glm::vec3& pivot, CutLeaves* cuts = nullptr) {
-  if (triangles.empty()) return;
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+void attachPrimitives(RTCDevice device, RTCScene scene, unsigned number, const std::vector<glm::vec3>& vertices,
+                      const Primitives& primitives, const glm::vec3& pivot, CutLeaves* cuts = nullptr) {
+  const std::size_t count = primitives.first_triangle.size();
+  if (count == 0) return;
+  RTCGeometry geometry =
+      rtcNewGeometry(device, primitives.quads() ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
   void* points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
                                          vertices.size());
-  void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
-                                          triangles.size());
+  void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                          primitives.quads() ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+                                          primitives.each * sizeof(unsigned), count);
   if (points && corners) {
     std::transform(vertices.begin(), vertices.end(), static_cast<glm::vec3*>(points),
                    [&](const glm::vec3& vertex) { return vertex - pivot; });
-    std::memcpy(corners, triangles.data(), triangles.size() * sizeof(glm::uvec3));
+    std::ranges::copy(primitives.corners, static_cast<unsigned*>(corners));
     if (cuts) {
       rtcSetGeometryUserData(geometry, cuts);
       rtcSetGeometryIntersectFilterFunction(geometry, passCutLeaves);
@@ -145,15 +147,25 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
     Prototype& prototype = prototypes.emplace_back();
     const glm::vec3& pivot = placed.pivots[kind];
     if (!mesh.leaf_cuts.empty()) prototype.cuts.reset(new CutLeaves{mesh.masks, mesh.leaf_cuts});
-    attachTriangles(device.get(), scene.get(), kLeaves, mesh.vertices, mesh.leaf_triangles, pivot,
-                    prototype.cuts.get());
-    for (const glm::uvec3& t : mesh.leaf_triangles) prototype.planes.push_back(planeOf(mesh, t, pivot));
-    if (with_wood && !mesh.wood_triangles.empty()) {
-      attachTriangles(device.get(), scene.get(), kWood, mesh.vertices, mesh.wood_triangles, pivot);
-      for (const glm::uvec3& t : mesh.wood_triangles) prototype.planes.push_back(planeOf(mesh, t, pivot));
-    }
-    for (const std::uint32_t leaf : mesh.leaf_of_triangle)
-      prototype.leaf_of_triangle.push_back(static_cast<std::uint32_t>(leaf_area.size()) + leaf);
+    const auto attach = [&](unsigned number, const std::vector<glm::uvec3>& triangles, const Primitives& primitives) {
+      attachPrimitives(device.get(), scene.get(), number, mesh.vertices, primitives, pivot,
+                       number == kLeaves ? prototype.cuts.get() : nullptr);
+      for (std::size_t i = 0; i < primitives.first_triangle.size(); ++i) {
+        const std::uint32_t first = primitives.first_triangle[i];
+        const glm::vec4 plane = planeOf(mesh, triangles[first], pivot);
+        prototype.planes.push_back({plane, primitives.pair(i) ? planeOf(mesh, triangles[first + 1], pivot) : plane});
+      }
+    };
+    const Primitives leaves =
+        prototype.cuts ? alone(mesh.leaf_triangles) : paired(mesh.leaf_triangles, mesh.leaf_of_triangle);
+    prototype.leaf_quads = leaves.quads();
+    attach(kLeaves, mesh.leaf_triangles, leaves);
+    const Primitives wood = with_wood ? paired(mesh.wood_triangles, {}) : Primitives{};
+    prototype.wood_quads = wood.quads();
+    attach(kWood, mesh.wood_triangles, wood);
+    for (const std::uint32_t first : leaves.first_triangle)
+      prototype.leaf_of_primitive.push_back(static_cast<std::uint32_t>(leaf_area.size()) +
+                                            mesh.leaf_of_triangle[first]);
     for (const double area : leafAreas(mesh)) leaf_area.push_back(area * trees[kind]);
   }
   surfaces = std::any_of(prototypes.begin(), prototypes.end(), [](const auto& of) { return !of.planes.empty(); });
@@ -191,7 +203,7 @@ RTCScene RayScene::Geometry::countingScene() const {
     std::vector<EmbreeScene> leaves;
     for (std::size_t kind = 0; kind < prototypes.size(); ++kind) {
       RTCScene scene = leaves.emplace_back(rtcNewScene(device.get())).get();
-      if (!prototypes[kind].leaf_of_triangle.empty())
+      if (!prototypes[kind].leaf_of_primitive.empty())
         rtcAttachGeometryByID(scene, rtcGetGeometry(scenes.prototypes[kind].get(), kLeaves), kLeaves);
     }
     counting = commit(std::move(leaves), RTC_SCENE_FLAG_ROBUST | kFilterPerCall);
@@ -207,7 +219,9 @@ Hit RayScene::Geometry::describe(const RTCHit& hit, const glm::vec3& from, const
   const bool alone = hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
   const Copy& copy = copies[alone ? 0 : hit.instID[0]];
   const Prototype& prototype = prototypes[copy.kind];
-  const glm::vec4& plane = prototype.planes[hit.primID + (leaf ? 0 : prototype.leaf_of_triangle.size())];
+  // Embree's second triangle of a quad turns u and v about.
+  const glm::vec4& plane =
+      prototype.planes[hit.primID + (leaf ? 0 : prototype.leaf_of_primitive.size())][hit.u + hit.v > 1.f];
   glm::vec3 normal(plane);
   float distance = plane.w;
   if (!alone) {
@@ -217,7 +231,7 @@ Hit RayScene::Geometry::describe(const RTCHit& hit, const glm::vec3& from, const
   const bool front = glm::dot(normal, direction) <= 0.f;
   return {.surface = leaf ? Surface::leaf : Surface::wood,
           .kind = copy.kind,
-          .leaf = leaf ? prototype.leaf_of_triangle[hit.primID] : 0,
+          .leaf = leaf ? prototype.leaf_of_primitive[hit.primID] : 0,
           .position = travelled - (glm::dot(normal, travelled) - distance) * normal,
           .front = front,
           .normal = front ? normal : -normal};
@@ -263,6 +277,8 @@ void RayScene::Geometry::closest(std::span<const glm::vec3> from, std::span<cons
     hit.geomID = rays.hit.geomID[i];
     hit.primID = rays.hit.primID[i];
     hit.instID[0] = rays.hit.instID[0][i];
+    hit.u = rays.hit.u[i];
+    hit.v = rays.hit.v[i];
     hits[i] = describe(hit, from[i], directions[i], rays.ray.tfar[i]);
   }
 }
@@ -370,11 +386,11 @@ struct Counting {
 
 void noteAndReject(const RTCFilterFunctionNArguments* arguments) {
   const Counting& counting = *reinterpret_cast<const Counting*>(arguments->context);
-  const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
+  const unsigned primitive = RTCHitN_primID(arguments->hit, arguments->N, 0);
   const unsigned instance = RTCHitN_instID(arguments->hit, arguments->N, 0, 0);
   const Copy& copy = counting.scene->copies[instance == RTC_INVALID_GEOMETRY_ID ? 0 : instance];
   counting.crossings->push_back({RTCRayN_tfar(arguments->ray, arguments->N, 0), instance,
-                                 counting.scene->prototypes[copy.kind].leaf_of_triangle[triangle]});
+                                 counting.scene->prototypes[copy.kind].leaf_of_primitive[primitive]});
   arguments->valid[0] = 0;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "render/reference/camera_trace.hpp"
+#include "render/reference/detail/parallel_shadows.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 #include "render/reference/detail/scene_light.hpp"
@@ -30,12 +31,14 @@ struct Seen {
 template <int N>
 class EyePaths {
  public:
-  //   ground  height of the ground about the scene's origin [m]; none if it is black in all bands
-  EyePaths(const RayScene::Geometry& scene, const SceneOptics<N>& optics, const SceneLight& light, float ground,
-           Followed followed = Followed::all)
+  //   shadows  of the sun
+  //   ground   height of the ground about the scene's origin [m]; none if it is black in all bands
+  EyePaths(const RayScene::Geometry& scene, const SceneOptics<N>& optics, const SceneLight& light,
+           const ParallelShadows& shadows, float ground, Followed followed = Followed::all)
       : scene_(scene),
         optics_(optics),
         light_(light),
+        shadows_(shadows),
         point_sun_(light.pointSun()),
         wide_(light.wide()),
         followed_(followed),
@@ -62,7 +65,7 @@ class EyePaths {
       seen[i] = {};
       dark[i] = !meets(hits[i], from[i], sights[i], to_ground[i]) || !sendsSun(hits[i], lit[i]);
     }
-    scene_.blocked(std::span(lit).first(count), to_sun_, std::span(dark).first(count));
+    shadows_.blocked(std::span(lit).first(count), std::span(dark).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       if (!meets(hits[i], from[i], sights[i], to_ground[i])) {
         if (wide_) seen[i].light = light_.met<N>(sights[i], kInfinity);
@@ -133,10 +136,9 @@ class EyePaths {
   // Follows a path on from where it met something, travelling along `direction`, and adds what it sees there.
   void goOn(Hit hit, glm::vec3 direction, BandLanes<N> weight, PathRandom& random, Seen<N>& seen) const {
     const Surface first = hit.surface;
-    for (int scatterings = 1; scatterings < kMostScatterings; ++scatterings) {
-      const BandLanes<N> arriving = weight;
-      const Onward onward = optics_.scatter(hit, direction, weight, random);
-      if (onward.fate == Fate::absorbed) return;
+    BandLanes<N> arriving = weight;
+    Onward onward = optics_.scatter(hit, direction, weight, random);
+    for (int scatterings = 1; scatterings < kMostScatterings && onward.fate != Fate::absorbed; ++scatterings) {
       const float density = wide_ ? optics_.density(hit, direction, arriving, onward.direction) : 0.f;
       const glm::vec3 from = scene_.leave(hit.position, onward.side);
       direction = onward.direction;
@@ -148,8 +150,12 @@ class EyePaths {
       }
       if (followed_ == Followed::once) return;
       glm::vec3 lit;
-      if (sendsSun(hit, lit) && !scene_.blocked(lit, to_sun_)) addSun(hit, direction, lit, weight, seen.more);
+      const bool sends = sendsSun(hit, lit);
+      const ParallelShadows::Point point = sends ? shadows_.fetch(lit) : ParallelShadows::Point{};
       if (wide_) addDrawn(hit, direction, weight, random, seen.more);
+      arriving = weight;
+      onward = optics_.scatter(hit, direction, weight, random);
+      if (sends && !shadows_.blocked(point)) addSun(hit, direction, lit, arriving, seen.more);
     }
   }
 
@@ -197,6 +203,7 @@ class EyePaths {
   const RayScene::Geometry& scene_;
   const SceneOptics<N>& optics_;
   const SceneLight& light_;
+  const ParallelShadows& shadows_;
   bool point_sun_, wide_;  // of the light
   Followed followed_;
   Direction to_sun_;

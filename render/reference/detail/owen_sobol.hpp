@@ -7,31 +7,30 @@
 namespace sunfleck::detail {
 
 inline std::uint32_t reversedBits(std::uint32_t x) {
-  x = x << 16 | x >> 16;
-  x = (x & 0x00ff00ffu) << 8 | (x & 0xff00ff00u) >> 8;
+  x = __builtin_bswap32(x);
   x = (x & 0x0f0f0f0fu) << 4 | (x & 0xf0f0f0f0u) >> 4;
   x = (x & 0x33333333u) << 2 | (x & 0xccccccccu) >> 2;
   return (x & 0x55555555u) << 1 | (x & 0xaaaaaaaau) >> 1;
 }
 
-// Owen's scrambling of the binary digits of x, first digit first, by a hash in which every bit depends on the bits
-// before it alone (Laine & Karras 2011; the constants of N. Vegdahl 2021).
+// Owen's scrambling of binary digits, the first of which is the lowest bit, by a hash in which every bit depends on the
+// bits before it alone (Laine & Karras 2011; the constants of N. Vegdahl 2021).
 inline std::uint32_t owenScrambled(std::uint32_t x, std::uint32_t seed) {
-  x = reversedBits(x);
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1u;
   x ^= x * 0x05526c56u;
-  x ^= x * 0x53a22864u;
-  return reversedBits(x);
+  return x ^ x * 0x53a22864u;
 }
 
-// Second dimension of the Sobol' sequence, as a binary fraction; the first is the reversed index.
-inline std::uint32_t secondSobol(std::uint32_t index) {
-  std::uint32_t result = 0;
-  for (std::uint32_t direction = 1u << 31; index != 0; index >>= 1, direction ^= direction >> 1)
-    if (index & 1u) result ^= direction;
-  return result;
+// Second dimension of the Sobol' sequence, as a binary fraction, from the first, which is the reversed index: digit i is
+// the sum of the digits j whose binomial coefficient over i is odd, those with all of the bits of i (Lucas 1878).
+inline std::uint32_t secondSobol(std::uint32_t first) {
+  first ^= first << 1 & 0xaaaaaaaau;
+  first ^= first << 2 & 0xccccccccu;
+  first ^= first << 4 & 0xf0f0f0f0u;
+  first ^= first << 8 & 0xff00ff00u;
+  return first ^ first << 16;
 }
 
 // Point `index` of the two first dimensions of the Sobol' sequence, scrambled. Further pairs of dimensions, numbered by
@@ -46,8 +45,10 @@ inline std::pair<std::uint32_t, std::uint32_t> scrambledSobol(std::uint32_t inde
     x = (x ^ x >> 15) * 0x846ca68bu;
     return x ^ x >> 16;
   };
-  const std::uint32_t shuffled = owenScrambled(index, seed(0));
-  return {owenScrambled(reversedBits(shuffled), seed(1)), owenScrambled(secondSobol(shuffled), seed(2))};
+  // Of the reversed index in a shuffled order.
+  const std::uint32_t first = owenScrambled(reversedBits(index), seed(0));
+  return {reversedBits(owenScrambled(reversedBits(first), seed(1))),
+          reversedBits(owenScrambled(reversedBits(secondSobol(first)), seed(2)))};
 }
 
 }  // namespace sunfleck::detail

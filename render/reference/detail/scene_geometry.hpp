@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -56,11 +57,19 @@ struct CutLeaves {
   std::vector<LeafCut> of_triangle;
 };
 
-// What a hit on a kind of tree is looked up in.
+// What a hit on a kind of tree is looked up in. A primitive is what Embree tests as one: a triangle, or two.
 struct Prototype {
-  std::vector<glm::vec4> planes;                // per triangle, leaves first: unit normal n, and n . x on it [m]
-  std::vector<std::uint32_t> leaf_of_triangle;  // among the leaves of all kinds
-  std::unique_ptr<CutLeaves> cuts;              // where masks cut leaves out
+  // Of each primitive's two triangles, leaves first, alike where it is one: unit normal n, and n . x on it [m].
+  std::vector<std::array<glm::vec4, 2>> planes;
+  std::vector<std::uint32_t> leaf_of_primitive;  // among the leaves of all kinds
+  bool leaf_quads = false, wood_quads = false;   // whether Embree has them as quads
+  std::unique_ptr<CutLeaves> cuts;               // where masks cut leaves out
+};
+
+// A triangle, or two that make up a parallelogram, in whichever tree it stands: `corner` + u `first` + v `second`.
+struct Facet {
+  glm::dvec3 corner, first, second;  // about the scene's origin [m]
+  bool parallelogram = false;
 };
 
 // A ray that would pass more periods than this without meeting anything is taken to leave the layer of leaves by the
@@ -121,6 +130,8 @@ struct RayScene::Geometry {
 
   glm::vec3 wrapped(glm::vec3 point) const;  // the same point in the traced period
   RTCScene countingScene() const;            // leaves alone, watertight, with filters; made when first asked for
+  // All that stands, copy after copy; none where that is more than `most` primitives, or cut by masks.
+  std::optional<std::vector<detail::Facet>> facets(std::size_t most) const;
 
   std::string embree_error;  // the first that Embree reported
   detail::Device device;
