@@ -39,7 +39,7 @@ std::vector<BrfView> principalPlane(const std::string& range, const Scene& scene
   const auto steps = static_cast<int>(std::floor((to - from) / step + 1e-6));
   for (int i = 0; i <= steps; ++i) {
     const double zenith = std::round((from + i * step) * 1e6) / 1e6 + 0.;  // no -0
-    views.push_back(viewOf(zenith, double{scene.sun_azimuth} / kDegree, fmt::format("brf:{:g}", zenith)));
+    views.push_back(viewOf(zenith, double{scene.sun().azimuth} / kDegree, fmt::format("brf:{:g}", zenith)));
   }
   return views;
 }

@@ -85,10 +85,10 @@ void writeMes(const std::string& file, const std::vector<BrfView>& views, const 
   std::string text = fmt::format("{}\t5\t-1.000000\n", views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     const ViewDirection& view = views[i].direction;
-    double azimuth = std::remainder(view.azimuth - double{scene.sun_azimuth} - std::numbers::pi, kTurn);
+    double azimuth = std::remainder(view.azimuth - double{scene.sun().azimuth} - std::numbers::pi, kTurn);
     // Below the digits told, the angle that is a whole turn is none.
     if (azimuth < -5e-7) azimuth += kTurn;
-    text += fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6f}\t{:.6f}\n", double{scene.sun_zenith}, view.zenith,
+    text += fmt::format("{:.6f}\t{:.6f}\t{:.6f}\t{:.6f}\t{:.6f}\n", double{scene.sun().zenith}, view.zenith,
                         std::abs(azimuth), result.views[i].whole.value, result.views[i].whole.standard_error);
   }
   writeWhole(file, text);

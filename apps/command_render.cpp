@@ -36,7 +36,8 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const Model model = options.model == "ss" ? Model::ss : options.model == "spp" ? Model::spp : Model::sppg;
   StandGeometry stand(options.effort);
-  stand.update(scene, model, treesInPicture(scene, cameraOf(scene)),
+  requireModelled(scene);
+  stand.update(scene, needsOf(model), treesInPicture(scene, cameraOf(scene)),
                terminalProgress("opacity maps and cells", run.quiet));
   const double prepared = seconds();
   const Image image = [&] {

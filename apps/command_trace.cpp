@@ -196,10 +196,10 @@ class TraceRun {
       for (const BrfResult& result : results)
         json_["brf_bands"].push_back({{"brf", jsonOf(views, result)}, {"albedo", jsonOf(result.albedo, "albedo")}});
     if (run_.json) return;
-    const bool one_direction = scene_.sky.kind == SceneSky::Kind::none && scene_.sun_diameter == 0.f;
+    const bool one_direction = scene_.sky.kind == SceneSky::Kind::none && scene_.sun().diameter == 0.f;
     fmt::print("{}, sun at {:.6g} degrees\n",
                one_direction ? "reflectance factors" : "hemispherical-directional reflectance factors (HDRF)",
-               double{scene_.sun_zenith} * 180. / std::numbers::pi);
+               double{scene_.sun().zenith} * 180. / std::numbers::pi);
     for (std::size_t band = 0; band < results.size(); ++band) {
       if (options_.all_bands) fmt::print(" {}\n", kBandNames[band]);
       fmt::print("{}", tableOf(views, results[band], one_direction ? "BRF" : "HDRF"));
@@ -408,7 +408,7 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
   if (options.turbid) scene = turbidScene(options, run, scene);
   const std::vector<BrfView> views = brfViews(options.brf, scene);
-  if (!options.brf.mes.empty() && (scene.sky.kind != SceneSky::Kind::none || scene.sun_diameter > 0.f))
+  if (!options.brf.mes.empty() && (scene.sky.kind != SceneSky::Kind::none || scene.sun().diameter > 0.f))
     throw InvalidInput("--mes: must be for light from one direction, without [sky] and sun.diameter_deg");
   std::vector<NamedEstimate> reference;
   if (!options.compare.empty()) reference = readReference(options.compare, figureNames(options, scene, views));

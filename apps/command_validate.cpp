@@ -67,7 +67,7 @@ std::string table(std::span<const Validation> validations) {
   std::string text =
       fmt::format("{}: {} {} ({} {}), {:.4g} m2, albedo {:.3g}, sun {:.3g} degrees from the zenith\n", first.scene.name,
                   leaves, leaves == 1 ? "leaf" : "leaves", triangles, triangles == 1 ? "triangle" : "triangles",
-                  first.leaf_area, first.optics().albedo(), first.scene.sun_zenith * 57.29578f);
+                  first.leaf_area, first.optics().albedo(), first.scene.sun().zenith * 57.29578f);
   for (const Validation& v : validations) {
     text += fmt::format("\n{:<12} RMS error against Monte Carlo, mean depth {:.2f} in {:.2f}\n", kindOf(v.scene),
                         v.mean_depth, v.mean_thickness);
@@ -154,7 +154,7 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
   StandGeometry stand(options.geometry);
   for (const Scene& scene : scenes) {
     if (interrupted()) break;
-    stand.update(scene, Model::sppg, std::nullopt, terminalProgress("opacity maps and cells", run.quiet));
+    stand.update(scene, {}, std::nullopt, terminalProgress("opacity maps and cells", run.quiet));
     validations.push_back(
         validate(scene, stand, options.effort, terminalProgress("Monte Carlo, " + kindOf(scene), run.quiet)));
     if (pictures.empty() && !options.no_pictures && !interrupted())

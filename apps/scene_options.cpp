@@ -20,8 +20,10 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
                   "Share of light that leaves scatter, half of it reflected; overrides the scene's optics")
       ->check(numberIn(0., 1., "in [0, 1]"))
       ->group(group);
-  command.add_option("--sun-zenith", options.sun_zenith_deg, "Angle of the sun from overhead, in degrees")
-      ->check(numberIn(0., 89.9, "in [0, 89.9] degrees"))
+  command
+      .add_option("--sun-zenith", options.sun_zenith_deg,
+                  "Angle of the sun from overhead, in degrees; from 89.9 on it has set")
+      ->check(numberIn(0., 180., "in [0, 180] degrees"))
       ->group(group);
   command.add_option("--sun-azimuth", options.sun_azimuth_deg, "Where the sun stands, in degrees from +x towards +y")
       ->check(numberIn(-360., 360., "in [-360, 360] degrees"))
@@ -84,8 +86,8 @@ Scene readScene(const SceneOptions& options, Media media) {
     for (SceneMedium& medium : scene.media)
       if (!medium.particles)
         medium.optics.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
-  if (options.sun_zenith_deg) scene.sun_zenith = glm::radians(*options.sun_zenith_deg);
-  if (options.sun_azimuth_deg) scene.sun_azimuth = glm::radians(*options.sun_azimuth_deg);
+  if (options.sun_zenith_deg) scene.suns.front().zenith = glm::radians(*options.sun_zenith_deg);
+  if (options.sun_azimuth_deg) scene.suns.front().azimuth = glm::radians(*options.sun_azimuth_deg);
   if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);
   intoOnePeriod(scene.stand);
   return scene;

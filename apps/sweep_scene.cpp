@@ -80,8 +80,8 @@ SweepScene::SweepScene(const SweepFile& sweep, std::size_t scene, std::uint64_t 
 // The scene in one row. Optics stand in the band that they are of.
 Scene SweepScene::sceneOf(const SweepTask& task, const SweepOptics& optics) const {
   Scene scene = scene_;
-  if (task.sun.zenith_deg) scene.sun_zenith = glm::radians(static_cast<float>(*task.sun.zenith_deg));
-  if (task.sun.azimuth_deg) scene.sun_azimuth = glm::radians(static_cast<float>(*task.sun.azimuth_deg));
+  if (task.sun.zenith_deg) scene.suns.front().zenith = glm::radians(static_cast<float>(*task.sun.zenith_deg));
+  if (task.sun.azimuth_deg) scene.suns.front().azimuth = glm::radians(static_cast<float>(*task.sun.azimuth_deg));
   for (TreeKind& kind : scene.kinds) {
     if (optics.leaf) kind.leaf[static_cast<std::size_t>(optics.band)] = *optics.leaf;
     if (optics.wood_reflectance) kind.wood_reflectance[optics.band] = *optics.wood_reflectance;
@@ -111,8 +111,8 @@ std::vector<SweepRow> SweepScene::rows(const SweepTask& task) const {
           shared(scene, [&](const TreeKind& kind) { return kind.leaf[static_cast<std::size_t>(optics.band)]; });
       const auto wood = shared(scene, [&](const TreeKind& kind) { return kind.wood_reflectance[optics.band]; });
       const std::string inputs = fmt::format(
-          "{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},", csvField(name_), glm::degrees(scene.sun_zenith),
-          glm::degrees(scene.sun_azimuth), optics.leaf ? "" : std::to_string(optics.band),
+          "{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},", csvField(name_), glm::degrees(scene.sun().zenith),
+          glm::degrees(scene.sun().azimuth), optics.leaf ? "" : std::to_string(optics.band),
           leaf ? fmt::format("{}", leaf->reflectance) : "", leaf ? fmt::format("{}", leaf->transmittance) : "",
           orNothing(wood), scene.ground_albedo[optics.band], sweep_.with_wood ? "with" : "without", seed_,
           sweep_.target ? orNothing(sweep_.paths) : fmt::format("{}", sweep_.paths.value_or(kPaths)),
@@ -151,7 +151,7 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
   if (!sweep_.models.empty()) {
     const Scene scene = sceneOf(task, task.optics[0]);
     try {
-      stand_.update(scene, Model::sppg, std::nullopt, [&](double) { return goOn(progress, 1.); });
+      stand_.update(scene, {}, std::nullopt, [&](double) { return goOn(progress, 1.); });
       geometry = leafGeometry(scene, stand_, [&](double) { return goOn(progress, 1.); });
     } catch (const std::runtime_error&) {
       if (!goOn(progress, 1.)) return std::nullopt;

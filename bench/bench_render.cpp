@@ -45,7 +45,7 @@ double meanRadiance(const Image& image) {
 // does not change the time.
 void picture(benchmark::State& state, Model model) {
   const Scene scene = sceneOf(randomCrown({}, 1));
-  const DeepOpacityMap map(*scene.kinds[0].mesh, scene.sun(), 512);
+  const DeepOpacityMap map(*scene.kinds[0].mesh, scene.sun().light(), 512);
   const gl::Context context;
   const std::vector<float> ones(16 * 16 * 16, 1.f);
   const gl::TreeRenderer renderer(

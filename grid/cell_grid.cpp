@@ -39,12 +39,6 @@ CellGrid cellGrid(const TreeMesh& mesh, int resolution) {
   return grid;
 }
 
-std::vector<float> spread(const CellGrid& grid, std::span<const float> of_active) {
-  std::vector<float> all(grid.count(), 0.f);
-  for (std::size_t i = 0; i < grid.active.size(); ++i) all[grid.active[i]] = of_active[i];
-  return all;
-}
-
 float interpolate(const CellGrid& grid, std::span<const float> values, glm::vec3 point) {
   const glm::vec3 at = glm::clamp((point - grid.low) / grid.cell_size - 0.5f, glm::vec3(0.f), glm::vec3(grid.size - 1));
   const glm::ivec3 low = glm::min(glm::ivec3(at), grid.size - 1);

@@ -36,7 +36,12 @@ struct CellGrid {
 CellGrid cellGrid(const TreeMesh& mesh, int resolution);
 
 // Values of all cells from those of the active ones; 0 in the others.
-std::vector<float> spread(const CellGrid& grid, std::span<const float> of_active);
+template <typename Value>
+std::vector<Value> spread(const CellGrid& grid, std::span<const Value> of_active) {
+  std::vector<Value> all(grid.count(), Value(0.f));
+  for (std::size_t i = 0; i < grid.active.size(); ++i) all[grid.active[i]] = of_active[i];
+  return all;
+}
 
 // Trilinear interpolation at a point between the values at the cells' centres, of all cells; beyond the outermost
 // centres their values.

@@ -150,7 +150,7 @@ void FoliageStand::setPeriod(std::optional<glm::vec2> period) {
   if (period)
     for (int axis = 0; axis < 2; ++axis)
       require((*period)[axis] > 0.f && (*period)[axis] <= kFarthest, "period [m]", (*period)[axis], "in (0, 1e6]");
-  for (const Prototype& prototype : prototypes_) periodsAround({.period = period}, leafBounds(*prototype.mesh));
+  for (const std::size_t p : standingPrototypes()) periodsAround({.period = period}, leafBounds(*prototypes_[p].mesh));
   period_ = period;
   touchDepths();
 }

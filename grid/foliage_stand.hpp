@@ -68,6 +68,7 @@ class FoliageStand {
   std::vector<Direction> sampleDirections() const;
 
   std::size_t instances() const { return placed_.size(); }
+  std::size_t prototypeOf(std::size_t instance) const { return placed_[instance].prototype; }
   const CellGrid& cells(std::size_t prototype);
   // (D3) The prototype's deep opacity map along a light.
   const DeepOpacityMap& lightMap(std::size_t prototype, std::size_t light);
@@ -90,6 +91,16 @@ class FoliageStand {
   std::span<const float> compensation(std::size_t instance, std::size_t light) const;
   //   (D10) mean radiance of the environment's light over all directions, per band [W m^-2 sr^-1]
   std::span<const glm::vec3> skyLight(std::size_t instance) const;
+
+  // Another number whenever the product is made anew; 0: not yet made.
+  std::uint64_t cellsRevision(std::size_t prototype) const { return graph_.revision(cells_, prototype); }
+  std::uint64_t lightMapRevision(std::size_t prototype, std::size_t light) const {
+    return graph_.revision(light_maps_, member(prototype, light));
+  }
+  std::uint64_t compensationRevision(std::size_t instance, std::size_t light) const {
+    return graph_.revision(compensation_, member(instance, light));
+  }
+  std::uint64_t skyLightRevision(std::size_t instance) const { return graph_.revision(sky_light_, instance); }
 
   // What has been made and what was reused since this stand was made.
   std::vector<ProductCost> costs() const { return graph_.costs(); }

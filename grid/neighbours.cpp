@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <string>
+#include <vector>
 
 #include "core/require.hpp"
 
@@ -30,13 +32,15 @@ glm::ivec2 periodsAround(const Stand& stand, const Bounds& box) {
   return around;
 }
 
-void requireApart(const Stand& stand, const Bounds& box) {
-  const glm::dvec2 half = 0.49999 * glm::dvec2(box.size());  // the shortest period may be rounded
+void requireApart(const Stand& stand, std::span<const Bounds> kinds) {
+  std::vector<glm::dvec2> halves;  // the shortest period may be rounded
+  for (const Bounds& box : kinds) halves.push_back(0.49999 * glm::dvec2(box.size()));
   double most = 0.;
   for (const Placement& tree : stand.trees) {
     double here = 0.;
     for (const Placement& other : stand.trees) {
       const glm::dvec2 away = glm::dvec2(other.position) - glm::dvec2(tree.position);
+      const glm::dvec2 half = glm::min(halves[tree.kind], halves[other.kind]);
       here += stand.period
                   ? within(away.x, half.x, double{stand.period->x}) * within(away.y, half.y, double{stand.period->y})
                   : (std::abs(away.x) <= half.x && std::abs(away.y) <= half.y ? 1. : 0.);

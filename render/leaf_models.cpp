@@ -48,16 +48,17 @@ LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const 
   const TreeMesh& mesh = *scene.kinds[0].mesh;
   const auto start = Clock::now();
   LeafGeometry geometry;
-  geometry.projections = leafProjections(mesh, scene.sun());
-  geometry.depths = leafDepths(mesh, stand.light(), scene.stand, progress);
+  geometry.projections = leafProjections(mesh, scene.sun().light());
+  geometry.depths = leafDepths(mesh, stand.light(0, 0), scene.stand, progress);
   geometry.depth_seconds = secondsSince(start);
 
   const auto start_interpolation = Clock::now();
   const std::vector<glm::vec3> centres = leafCentres(mesh);
-  for (const std::vector<float>& of_cells : stand.compensation()) {
+  for (std::size_t tree = 0; tree < scene.stand.trees.size(); ++tree) {
+    const std::span<const float> of_cells = stand.compensation(tree, 0);
     std::vector<float>& of_leaves = geometry.compensation.emplace_back();
     of_leaves.reserve(centres.size());
-    for (const glm::vec3& centre : centres) of_leaves.push_back(interpolate(stand.cells(), of_cells, centre));
+    for (const glm::vec3& centre : centres) of_leaves.push_back(interpolate(stand.cells(0), of_cells, centre));
   }
   geometry.compensation_seconds = secondsSince(start_interpolation);
   return geometry;

@@ -30,7 +30,23 @@ struct TreeKind {
   glm::vec3 wood_reflectance{0.3f};  // Lambertian, per band [1], 0 .. 1
 };
 
-// What is simulated: kinds of trees, where they stand, the ground, the sun and the sky.
+// A sun this low or lower has set: it gives no light. 89.9 degrees, also when rounded.
+inline constexpr float kSunset = 1.5690511f;
+inline constexpr std::size_t kMostSuns = 4;
+
+// A light as far away as the sun.
+struct Sun {
+  float zenith = 0.f;         // [rad], 0 .. pi
+  float azimuth = 0.f;        // where it stands, from +x towards +y [rad]
+  glm::vec3 irradiance{1.f};  // of a plane that faces it, per band [1], 0 .. 10
+  float diameter = 0.f;       // of its disc, 0: a point [rad]
+
+  bool up() const { return zenith <= kSunset; }
+  Direction light() const { return sunlight(zenith, azimuth); }  // in which its light travels
+  bool operator==(const Sun&) const = default;
+};
+
+// What is simulated: kinds of trees, where they stand, the ground, the suns and the sky.
 struct Scene {
   std::string name;
   std::string origin;                       // the file or the name it was read from, with which messages begin
@@ -40,14 +56,11 @@ struct Scene {
   glm::vec3 ground_albedo{0.f};    // Lambertian, per band [1], 0 .. 1; other grounds, per band, in its place:
   std::optional<std::array<RpvGround, kBands>> ground_rpv;
   std::array<std::shared_ptr<const GroundTexture>, kBands> ground_texture;  // of all bands, or none
-  float sun_zenith = 0.f;                                                   // [rad], 0 .. below pi/2
-  float sun_azimuth = 0.f;        // where the sun stands, from +x towards +y [rad]
-  glm::vec3 sun_irradiance{1.f};  // of a plane that faces the sun, per band [1], 0 .. 10
-  float sun_diameter = 0.f;       // of its disc, 0: a point [rad]
+  std::vector<Sun> suns{Sun{}};  // 1 .. kMostSuns; the first is the one that lights the sky
   SceneSky sky;
   std::optional<Camera> camera;  // none: one that shows the whole stand
 
-  Direction sun() const { return sunlight(sun_zenith, sun_azimuth); }
+  const Sun& sun() const { return suns.front(); }
   const TreeKind& kindOf(const Placement& tree) const { return kinds[tree.kind]; }
 };
 

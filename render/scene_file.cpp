@@ -186,13 +186,25 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
   scene.camera = read;
 }
 
-void readSun(Scene& scene, detail::SceneTable sun) {
-  scene.sun_zenith = degrees(sun, "zenith_deg", 0., 89.9, "in [0, 89.9]");
-  scene.sun_azimuth = degrees(sun, "azimuth_deg", -360., 360., "in [-360, 360]");
-  scene.sun_irradiance = sun.perBand("irradiance", scene.sun_irradiance, 10.);
-  scene.sun_diameter =
-      degreesOrZero(sun, scene.origin + ": sun", "diameter_deg", 0.25, 60.);  // as Monte Carlo takes it
-  sun.done();
+Sun readSun(const std::string& origin, detail::SceneTable table) {
+  Sun sun;
+  sun.zenith = degrees(table, "zenith_deg", 0., 180., "in [0, 180]");
+  sun.azimuth = degrees(table, "azimuth_deg", -360., 360., "in [-360, 360]");
+  sun.irradiance = table.perBand("irradiance", sun.irradiance, 10.);
+  sun.diameter = degreesOrZero(table, origin + ": sun", "diameter_deg", 0.25, 60.);  // as Monte Carlo takes it
+  table.done();
+  return sun;
+}
+
+void readSuns(Scene& scene, const toml::node* node, const std::filesystem::path& file) {
+  const toml::array* several = node ? node->as_array() : nullptr;  // [[sun]]
+  if (several && (several->empty() || several->size() > kMostSuns))
+    throw InvalidInput(fmt::format("{}:{}: number of [[sun]] = {}: must be from 1 to {}", file.string(),
+                                   node->source().begin.line, several->size(), kMostSuns));
+  scene.suns.clear();
+  for (std::size_t i = 0; i < (several ? several->size() : 1); ++i)
+    scene.suns.push_back(
+        readSun(scene.origin, detail::SceneTable(several ? several->get(i) : node, file.string(), "sun")));
 }
 
 void readSky(Scene& scene, detail::SceneTable sky, const std::filesystem::path& folder) {
@@ -301,7 +313,7 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
     scene.kinds[0].mesh = std::make_shared<const TreeMesh>();
   }
   readStand(scene, section("stand"));
-  readSun(scene, section("sun"));
+  readSuns(scene, table.get("sun"), file);
   readSky(scene, section("sky"), file.parent_path());
   sunAndSky(scene);  // refuses a sky that cannot be
   if (table.contains("camera")) readCamera(scene, section("camera"));
@@ -448,10 +460,12 @@ albedo = 0.0                  # lambert: 0 to 1; 0: no ground
 # texture_size = 1.0          # texture: metres that its width covers
 
 [sun]
-zenith_deg = 0.0              # 0 overhead, to 89.9
+zenith_deg = 0.0              # 0 overhead, to 180; from 89.9 on it has set and gives no light
 azimuth_deg = 0.0             # where the sun stands, from +x towards +y
 irradiance = 1.0              # of a plane that faces the sun, 0 to 10; 0: no sun. All results are relative to 1
-diameter_deg = 0.0            # of its disc, 0.25 to 60; the real one has 0.533; 0: a point
+diameter_deg = 0.0            # of its disc, 0.25 to 60; the real one has 0.533; 0: a point, as which render draws it
+# Several suns, at most 4: a [[sun]] with these keys for each, instead of [sun]. The first is the one that lights a
+# preetham sky. render takes several, trace and validate one alone.
 
 [sky]                         # trace alone knows a sky, and a sun of other irradiance or with a disc
 kind = "none"                 # none | uniform | overcast | preetham | image

@@ -31,7 +31,8 @@ SkyMap asBright(const SkyMap& sky, const SceneSky& as) {
 
 SunAndSky sunAndSky(const Scene& scene) {
   const SceneSky& asked = scene.sky;
-  SunAndSky light{.sun = scene.sun_irradiance};
+  SunAndSky light;
+  for (const Sun& sun : scene.suns) light.suns.push_back(sun.up() ? sun.irradiance : glm::vec3(0.f));
   const auto keep = [&](const SkyMap& sky) { light.sky = std::make_shared<const SkyMap>(sky); };
   switch (asked.kind) {
     case SceneSky::Kind::none:
@@ -46,7 +47,8 @@ SunAndSky sunAndSky(const Scene& scene) {
       keep(asBright(*asked.image, asked));
       break;
     case SceneSky::Kind::preetham: {
-      const ClearSky clear = preethamSky(double{scene.sun_zenith}, double{scene.sun_azimuth}, asked.turbidity);
+      if (!scene.sun().up()) break;
+      const ClearSky clear = preethamSky(double{scene.sun().zenith}, double{scene.sun().azimuth}, asked.turbidity);
       const double sun = luminance(clear.sun);
       if (asked.irradiance) {
         keep(asBright(clear.sky, asked));
@@ -56,7 +58,7 @@ SunAndSky sunAndSky(const Scene& scene) {
                 "at most 1000, or told by [sky] irradiance: next to nothing of so low a sun comes through the air");
         keep(clear.sky.scaled(glm::dvec3(1. / sun)));
       }
-      if (asked.coloured_sun) light.sun *= glm::vec3(clear.sun / sun);
+      if (asked.coloured_sun) light.suns.front() *= glm::vec3(clear.sun / sun);
       break;
     }
   }

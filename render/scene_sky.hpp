@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sky/sky_map.hpp"
 
@@ -25,11 +26,12 @@ struct SceneSky {
   std::string file{};         // of the image
   std::shared_ptr<const SkyMap> image{};
   std::size_t negative_values = 0;  // of the image, taken for 0
+  bool operator==(const SceneSky&) const = default;
 };
 
-// The light of a scene, per band.
+// The light of a scene, per band. Preetham's sky is black when its sun has set.
 struct SunAndSky {
-  glm::vec3 sun{1.f};                   // irradiance of a plane that faces the sun [1]
+  std::vector<glm::vec3> suns;          // of each, irradiance of a plane that faces it [1]; 0 of those that have set
   std::shared_ptr<const SkyMap> sky{};  // none where there is none
 };
 // Throws InvalidInput where the sky cannot be as bright as it is to be: an image that is black in a band, or Preetham's

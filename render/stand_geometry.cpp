@@ -1,93 +1,294 @@
 #include "render/stand_geometry.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/trigonometric.hpp>
 #include <string>
+#include <utility>
 
 #include "core/require.hpp"
 #include "grid/neighbours.hpp"
+#include "sky/sky_shares.hpp"
 
 namespace sunfleck {
+namespace {
+
+std::string beginning(const Scene& scene) {
+  return scene.origin.empty() ? "" : scene.origin + ": ";
+}
+
+// As Monte Carlo turns trees.
+std::shared_ptr<const TreeMesh> turned(const std::shared_ptr<const TreeMesh>& mesh, float rotation) {
+  if (rotation == 0.f) return mesh;
+  auto result = std::make_shared<TreeMesh>(*mesh);
+  const float cosine = std::cos(rotation), sine = std::sin(rotation);
+  for (glm::vec3& v : result->vertices) v = {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z};
+  return result;
+}
+
+// The scene's kinds, not turned, and those that are turned, in the order of their first trees.
+struct Kinds {
+  std::vector<StandKind> kinds;
+  std::vector<std::size_t> of_trees;
+};
+Kinds kindsOf(const Scene& scene) {
+  Kinds found;
+  for (std::uint32_t kind = 0; kind < scene.kinds.size(); ++kind) found.kinds.push_back({.kind = kind});
+  for (const Placement& tree : scene.stand.trees) {
+    std::size_t kind = tree.kind;
+    if (tree.rotation != 0.f) {
+      const auto same = std::find_if(found.kinds.begin(), found.kinds.end(), [&](const StandKind& of) {
+        return of.kind == tree.kind && of.rotation == tree.rotation;
+      });
+      kind = static_cast<std::size_t>(same - found.kinds.begin());
+      if (same == found.kinds.end()) found.kinds.push_back({.kind = tree.kind, .rotation = tree.rotation});
+    }
+    found.kinds[kind].stands = true;
+    found.of_trees.push_back(kind);
+  }
+  return found;
+}
+
+void requireSurfaces(const Scene& scene) {
+  requireWholeLeaves(scene, "the models");
+  if (scene.ground_rpv || scene.ground_texture[0])
+    throw InvalidInput(beginning(scene) + "ground.kind = " + (scene.ground_rpv ? "\"rpv\"" : "\"texture\"") +
+                       ": must be \"lambert\" for the models (trace takes any)");
+}
+
+void requireStand(const Scene& scene) {
+  const Stand& stand = scene.stand;
+  const std::string from = beginning(scene);
+  require(stand.trees.size() <= kMostDrawnTrees, from + "number of trees in [stand]", stand.trees.size(),
+          "at most " + std::to_string(kMostDrawnTrees) + " for the models (trace takes any)");
+  const Kinds kinds = kindsOf(scene);
+  const auto standing = static_cast<std::size_t>(
+      std::count_if(kinds.kinds.begin(), kinds.kinds.end(), [](const StandKind& kind) { return kind.stands; }));
+  require(standing <= kMostKinds, from + "number of kinds of trees, each rotation_deg counted", standing,
+          "at most " + std::to_string(kMostKinds) +
+              " for the models, which make maps of each: turn trees by whole steps (trace takes any)");
+  std::vector<Bounds> boxes;
+  for (const TreeKind& kind : scene.kinds) boxes.push_back(leafBounds(*kind.mesh));
+  for (const StandKind& kind : kinds.kinds) {
+    if (!kind.stands) continue;
+    const TreeKind& of = scene.kinds[kind.kind];
+    if (of.mesh->leaf_triangles.empty())
+      throw InvalidInput(from + "tree \"" + of.name + "\": must have leaves for the models (trace takes any)");
+    if (stand.period)
+      periodsAround(stand, kind.rotation == 0.f ? boxes[kind.kind] : leafBounds(*turned(of.mesh, kind.rotation)));
+  }
+  requireApart(stand, boxes);
+}
+
+}  // namespace
 
 void requireWholeLeaves(const Scene& scene, const std::string& what) {
   for (const TreeKind& kind : scene.kinds)
     if (!kind.mesh->leaf_cuts.empty())
-      throw InvalidInput((scene.origin.empty() ? "" : scene.origin + ": ") + "\"" + kind.name +
+      throw InvalidInput(beginning(scene) + "\"" + kind.name +
                          "\" has leaves that masks cut out (map_d): must be whole for " + what +
                          " (trace alone takes masks)");
 }
 
+void requireDrawable(const Scene& scene) {
+  requireSurfaces(scene);
+  requireStand(scene);
+}
+
 void requireModelled(const Scene& scene) {
   const Stand& stand = scene.stand;
-  const std::string from = scene.origin.empty() ? "" : scene.origin + ": ";
-  requireWholeLeaves(scene, "the models");
+  const std::string from = beginning(scene);
   for (const TreeKind& kind : scene.kinds)
     for (const LeafOptics& leaf : kind.leaf)
       require(leaf.gloss == 0.f, from + "leaf gloss", leaf.gloss,
-              "0 for the models, whose leaves scatter by Lambert's law (trace takes any)");
-  if (scene.ground_rpv || scene.ground_texture[0])
-    throw InvalidInput(from + "ground.kind = " + (scene.ground_rpv ? "\"rpv\"" : "\"texture\"") +
-                       ": must be \"lambert\" for the models (trace takes any)");
+              "0 for the models, whose leaves scatter by Lambert's law (trace and render take any)");
   require(scene.kinds.size() == 1, from + "number of kinds of trees", scene.kinds.size(),
-          "1 for the models, which know one leaf alone (trace and voxelize --stand take any)");
+          "1 for the models' irradiance of leaves (trace, render and voxelize --stand take any)");
   require(stand.trees.size() <= kMostTrees, from + "number of trees in [stand]", stand.trees.size(),
           "at most " + std::to_string(kMostTrees) + " for the models (trace takes any)");
   for (std::size_t i = 0; i < stand.trees.size(); ++i)
     require(stand.trees[i].rotation == 0.f, from + "stand.positions: rotation_deg of tree " + std::to_string(i + 1),
             std::round(glm::degrees(stand.trees[i].rotation) * 1e4f) / 1e4f,
-            "0 for the models: their maps serve translated copies only (trace takes any)");
-  if (scene.sky.kind != SceneSky::Kind::none || scene.sun_irradiance != glm::vec3(1.f) || scene.sun_diameter != 0.f)
-    throw InvalidInput(
-        from +
-        "[sky], sun.irradiance and sun.diameter_deg: must be left out for the models, which know the sun "
-        "as a point of irradiance 1 alone (trace takes any)");
-  const Bounds box = leafBounds(*scene.kinds[0].mesh);
-  periodsAround(stand, box);
-  requireApart(stand, box);
+            "0 for the models' irradiance of leaves (trace and render take any)");
+  if (scene.sky.kind != SceneSky::Kind::none || scene.suns.size() != 1 || scene.sun().irradiance != glm::vec3(1.f) ||
+      scene.sun().diameter != 0.f)
+    throw InvalidInput(from +
+                       "[sky], a second [[sun]], sun.irradiance and sun.diameter_deg: must be left out for the models' "
+                       "irradiance of leaves, which is that under one sun, a point of irradiance 1 (trace and render "
+                       "take any)");
+  require(scene.sun().up(), from + "sun.zenith_deg", glm::degrees(scene.sun().zenith),
+          "in [0, 89.9] for the models' irradiance of leaves: above the horizon");
+  requireDrawable(scene);
+}
+
+GeometryNeeds needsOf(Model model) {
+  return {.compensation = model == Model::sppg};
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort)
-    : effort_(effort),
-      stand_(std::make_unique<FoliageStand>(FoliageEffort{.axes = spreadAxes(effort.sample_directions / 2),
-                                                          .sample_resolution = effort.sample_resolution,
-                                                          .light_resolution = effort.light_resolution,
-                                                          .cells = effort.cells})) {}
+    : foliage_(std::make_unique<FoliageStand>(FoliageEffort{.axes = spreadAxes(effort.sample_directions / 2),
+                                                            .sample_resolution = effort.sample_resolution,
+                                                            .light_resolution = effort.light_resolution,
+                                                            .cells = effort.cells})) {
+  static_assert(FoliageStand::kMostLights == kMostSuns);
+}
 
-void StandGeometry::update(const Scene& scene, Model model, std::optional<std::span<const std::size_t>> trees,
-                           const Progress& progress) {
-  requireModelled(scene);
-  if (!tree_)
-    stand_->addPrototype(scene.kinds[0].mesh);
-  else if (tree_ != scene.kinds[0].mesh) {
-    stand_->setPeriod(std::nullopt);  // the former scene's may not suit the tree
-    stand_->replacePrototype(0, scene.kinds[0].mesh);
+// The kinds that stand, by prototypes: the same as before where there are such, so that what is known of them stays.
+void StandGeometry::updatePrototypes(const Scene& scene) {
+  for (Prototype& prototype : prototypes_) prototype.used = false;
+  of_kinds_.assign(kinds_.size(), {});
+  std::vector<char> found(kinds_.size(), 0);
+  const auto take = [&](const auto& fits) {
+    for (std::size_t kind = 0; kind < kinds_.size(); ++kind)
+      for (std::size_t i = 0; i < prototypes_.size() && kinds_[kind].stands && !found[kind]; ++i) {
+        if (prototypes_[i].used || !fits(prototypes_[i], kinds_[kind])) continue;
+        of_kinds_[kind].prototype = i;
+        found[kind] = prototypes_[i].used = true;
+      }
+  };
+  const auto sameTree = [&](const Prototype& p, const StandKind& kind) {
+    return p.mesh == scene.kinds[kind.kind].mesh && p.rotation == kind.rotation;
+  };
+  take([&](const Prototype& p, const StandKind& kind) { return sameTree(p, kind) && p.kind == kind.kind; });
+  take(sameTree);
+  take([](const Prototype& p, const StandKind& kind) { return p.kind == kind.kind && p.rotation == kind.rotation; });
+  take([](const Prototype&, const StandKind&) { return true; });
+  for (std::size_t kind = 0; kind < kinds_.size(); ++kind) {
+    if (!kinds_[kind].stands) continue;
+    const bool added = !found[kind];
+    if (added) {
+      of_kinds_[kind].prototype = prototypes_.size();
+      prototypes_.push_back({.used = true});
+    }
+    Prototype& prototype = prototypes_[of_kinds_[kind].prototype];
+    if (added || !sameTree(prototype, kinds_[kind])) {
+      prototype.mesh = scene.kinds[kinds_[kind].kind].mesh;
+      prototype.rotation = kinds_[kind].rotation;
+      prototype.turned = turned(prototype.mesh, prototype.rotation);
+      if (added)
+        foliage_->addPrototype(prototype.turned);
+      else
+        foliage_->replacePrototype(of_kinds_[kind].prototype, prototype.turned);
+    }
+    prototype.kind = kinds_[kind].kind;
+    kinds_[kind].mesh = prototype.turned;
   }
-  tree_ = scene.kinds[0].mesh;
-  stand_->setPeriod(scene.stand.period);
-  const std::size_t before = stand_->instances(), now = scene.stand.trees.size();
-  for (std::size_t i = 0; i < now; ++i)
-    if (i < before)
-      stand_->move(i, scene.stand.trees[i].position);
-    else
-      stand_->add(0, scene.stand.trees[i].position);
-  for (std::size_t i = now; i < before; ++i) stand_->remove(i);
-  const Direction sun = scene.sun();
-  stand_->setLights(std::span(&sun, 1));
+}
 
+void StandGeometry::updateKinds(const Scene& scene) {
+  std::vector<std::shared_ptr<const TreeMesh>> meshes;
+  for (const TreeKind& kind : scene.kinds) meshes.push_back(kind.mesh);
+  if (scene.stand == stand_ && meshes == meshes_) return;
+  requireStand(scene);
+  if (scene.stand.period != stand_.period) foliage_->setPeriod(std::nullopt);  // the former may not suit the new trees
+  meshes_.clear();                                                             // until all is done
+  Kinds found = kindsOf(scene);
+  kinds_ = std::move(found.kinds);
+  kind_of_tree_ = std::move(found.of_trees);
+  updatePrototypes(scene);
+  std::vector<std::size_t> prototypes;
+  for (const std::size_t kind : kind_of_tree_) prototypes.push_back(of_kinds_[kind].prototype);
+  trees_.update(*foliage_, scene.stand.trees, prototypes);
+  foliage_->setPeriod(scene.stand.period);
+  of_instances_.resize(foliage_->instances());
+  stand_ = scene.stand;
+  meshes_ = std::move(meshes);
+}
+
+void StandGeometry::updateLights(const Scene& scene) {
+  if (scene.suns == suns_ && scene.sky == sky_) return;
+  shining_ = sunAndSky(scene);
+  if (shining_.sky && shining_.sky->irradiance() == glm::dvec3(0.)) shining_.sky = nullptr;
+  suns_ = scene.suns;
+  sky_ = scene.sky;
+  lights_.clear();
+  std::vector<Direction> directions;
+  for (std::size_t i = 0; i < suns_.size(); ++i) {
+    if (shining_.suns[i] == glm::vec3(0.f)) continue;
+    lights_.push_back({.sun = i, .along = suns_[i].light(), .irradiance = shining_.suns[i]});
+    directions.push_back(lights_.back().along);
+  }
+  foliage_->setLights(directions);
+  const std::vector<Direction> samples = foliage_->sampleDirections();
+  foliage_->setSky(shining_.sky ? skyShares(*shining_.sky, samples)
+                                : std::vector<glm::vec3>(samples.size(), glm::vec3(0.f)));
+}
+
+void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
+                           std::optional<std::span<const std::size_t>> trees, const Progress& progress) {
+  costs_before_ = foliage_->costs();
   light_seconds_ = compensation_seconds_ = 0.;
-  cells_ = &stand_->cells(0);
-  {
+  requireSurfaces(scene);
+  updateKinds(scene);
+  updateLights(scene);
+  for (std::size_t kind = 0; kind < kinds_.size(); ++kind) {
+    if (!kinds_[kind].stands) continue;
+    OfKind& of_kind = of_kinds_[kind];
+    foliage_->setLeaf(of_kind.prototype, scene.kinds[kinds_[kind].kind].leaf);
+    of_kind.cells = &foliage_->cells(of_kind.prototype);
     const Stopwatch watch(light_seconds_);
-    light_ = &stand_->lightMap(0, 0);
+    for (std::size_t light = 0; light < lights_.size(); ++light)
+      of_kind.lights[light] = &foliage_->lightMap(of_kind.prototype, light);
   }
-  compensation_.clear();
-  if (model != Model::sppg) return;
-  const Stopwatch watch(compensation_seconds_);
-  const std::vector<std::size_t> all = stand_->allInstances();
-  const std::span<const std::size_t> wanted = trees.value_or(all);
-  stand_->prepareCompensation(wanted, progress);
-  compensation_.assign(now, std::vector<float>(cells_->count(), 0.f));
-  for (const std::size_t i : wanted) compensation_[i] = spread(*cells_, stand_->compensation(i, 0));
+
+  std::vector<std::size_t> instances;
+  if (trees)
+    for (const std::size_t tree : *trees) instances.push_back(trees_.instance(tree));
+  else
+    for (std::size_t tree = 0; tree < scene.stand.trees.size(); ++tree) instances.push_back(trees_.instance(tree));
+  const auto keep = [&](std::size_t instance, std::uint64_t revision, const auto& of_active, auto& cells) {
+    if (cells.revision == revision) return;
+    const std::size_t prototype = foliage_->prototypeOf(instance);
+    cells.values = spread(foliage_->cells(prototype), of_active);
+    cells.revision = revision;
+  };
+  if (needs.compensation && !lights_.empty()) {
+    const Stopwatch watch(compensation_seconds_);
+    foliage_->prepareCompensation(instances, progress);
+    for (const std::size_t i : instances)
+      for (std::size_t light = 0; light < lights_.size(); ++light)
+        keep(i, foliage_->compensationRevision(i, light), foliage_->compensation(i, light),
+             of_instances_[i].compensation[light]);
+  }
+  if (needs.sky_light && shining_.sky) {
+    foliage_->prepareSkyLight(instances, progress);
+    for (const std::size_t i : instances)
+      keep(i, foliage_->skyLightRevision(i), foliage_->skyLight(i), of_instances_[i].sky_light);
+  }
+}
+
+std::span<const float> StandGeometry::compensation(std::size_t tree, std::size_t light) const {
+  return of_instances_[trees_.instance(tree)].compensation[light].values;
+}
+std::span<const glm::vec3> StandGeometry::skyLight(std::size_t tree) const {
+  if (!shining_.sky) return {};
+  return of_instances_[trees_.instance(tree)].sky_light.values;
+}
+
+std::uint64_t StandGeometry::cellsRevision(std::size_t kind) const {
+  return kinds_[kind].stands ? foliage_->cellsRevision(of_kinds_[kind].prototype) : 0;
+}
+std::uint64_t StandGeometry::lightRevision(std::size_t kind, std::size_t light) const {
+  return kinds_[kind].stands ? foliage_->lightMapRevision(of_kinds_[kind].prototype, light) : 0;
+}
+std::uint64_t StandGeometry::compensationRevision(std::size_t tree, std::size_t light) const {
+  return of_instances_[trees_.instance(tree)].compensation[light].revision;
+}
+std::uint64_t StandGeometry::skyLightRevision(std::size_t tree) const {
+  return shining_.sky ? of_instances_[trees_.instance(tree)].sky_light.revision : 0;
+}
+
+std::vector<ProductCost> StandGeometry::lastCosts() const {
+  std::vector<ProductCost> costs = foliage_->costs();
+  for (std::size_t i = 0; i < costs_before_.size(); ++i) {
+    costs[i].made -= costs_before_[i].made;
+    costs[i].reused -= costs_before_[i].reused;
+    costs[i].adjusted -= costs_before_[i].adjusted;
+    costs[i].skipped -= costs_before_[i].skipped;
+    costs[i].seconds -= costs_before_[i].seconds;
+  }
+  return costs;
 }
 
 }  // namespace sunfleck

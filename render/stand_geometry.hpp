@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +12,7 @@
 #include "grid/foliage_stand.hpp"
 #include "render/model.hpp"
 #include "render/scene.hpp"
+#include "render/stand_trees.hpp"
 
 namespace sunfleck {
 
@@ -20,44 +24,127 @@ struct GeometryEffort {
   int cells = 16;               // along the longest side of a tree
 };
 
-// The models hold numbers for every leaf of every tree.
-inline constexpr std::size_t kMostTrees = 1024;
+// The models hold numbers for every leaf of every tree; pictures for every cell.
+inline constexpr std::size_t kMostTrees = 1024, kMostDrawnTrees = 16'384;
+// Trees of a kind that are turned differently count as kinds of their own: each has its maps.
+inline constexpr std::size_t kMostKinds = 64;
 
-// Throws InvalidInput on a stand that the models cannot treat: one of several kinds of trees, one with a rotated tree,
-// since a prototype's maps serve its translated copies only (Eq. 31), with more than kMostTrees trees, or with a period
-// much shorter than the tree is wide.
+// Throws InvalidInput on a stand that cannot be drawn by the models: one of leaves that masks cut out, on a ground that
+// is not Lambert's, with more than kMostDrawnTrees trees or kMostKinds kinds, with a period much shorter than the trees
+// are wide, or with heaps of trees in one place.
+void requireDrawable(const Scene& scene);
+// The same on a scene whose leaves' irradiance the models do not tell: also one of several kinds of trees, or with a
+// rotated one, with more than kMostTrees trees, with glossy leaves, with a sky, or another light than one sun of
+// irradiance 1 that is a point.
 void requireModelled(const Scene& scene);
 // Throws InvalidInput where masks cut out the scene's leaves: `what` would take their whole triangles.
 void requireWholeLeaves(const Scene& scene, const std::string& what);
 
-// What leaves and fragments read to be shaded, whatever their optics: the prototype's map along the light, and the
-// cells of each tree with their G-factors. It serves one scene after another and computes only what the next one
-// changes.
+// What is wanted besides the lights' maps.
+struct GeometryNeeds {
+  bool compensation = true;  // G
+  bool sky_light = true;     // where a sky shines
+};
+GeometryNeeds needsOf(Model model);
+
+// A sun that shines.
+struct StandLight {
+  std::size_t sun = 0;  // of the scene's
+  Direction along{0.f, 0.f, -1.f};
+  glm::vec3 irradiance{1.f};  // of a plane that faces it, per band [1]
+};
+
+// Trees that share maps and cells: of one kind of the scene, turned alike.
+struct StandKind {
+  std::uint32_t kind = 0;                // of the scene's
+  float rotation = 0.f;                  // [rad]
+  std::shared_ptr<const TreeMesh> mesh;  // turned
+  bool stands = false;                   // whether there is a tree of it; none of what follows is told of others
+};
+
+// What leaves and fragments read to be shaded: the lights, each kind's maps along them, its cells, and for each tree G
+// and sky light of the cells. It serves one scene after another and computes only what the next one changes.
 class StandGeometry {
  public:
   explicit StandGeometry(const GeometryEffort& effort = {});
 
-  // Brings the light's map up to date for the scene, and for a model with G the G of the trees listed. Throws
-  // InvalidInput as requireModelled() does, and std::runtime_error("interrupted") when `progress` ends it.
+  // Brings the lights' maps up to date for the scene, and what else is needed of the trees listed. Throws InvalidInput
+  // as requireDrawable() and sunAndSky() do, and std::runtime_error("interrupted") when `progress` ends it: what is
+  // told then may be of the former scene.
   //   trees  of the scene's stand; none: all
-  void update(const Scene& scene, Model model, std::optional<std::span<const std::size_t>> trees = std::nullopt,
-              const Progress& progress = {});
+  void update(const Scene& scene, const GeometryNeeds& needs = {},
+              std::optional<std::span<const std::size_t>> trees = std::nullopt, const Progress& progress = {});
 
-  const DeepOpacityMap& light() const { return *light_; }  // along the scene's sun
-  const CellGrid& cells() const { return *cells_; }        // of the prototype
-  // Of each tree: G per cell [1], 0 .. 1, and 0 for trees that were not listed. Empty where the model has no G.
-  const std::vector<std::vector<float>>& compensation() const { return compensation_; }
-  double lightSeconds() const { return light_seconds_; }  // wall time of the last update for the light's map
+  std::span<const StandLight> lights() const { return lights_; }             // at most kMostSuns; none by night
+  const std::shared_ptr<const SkyMap>& sky() const { return shining_.sky; }  // none where it is black
+
+  std::span<const StandKind> kinds() const { return kinds_; }  // the scene's own, not turned; then those turned
+  std::size_t kindOf(std::size_t tree) const { return kind_of_tree_[tree]; }
+  const CellGrid& cells(std::size_t kind) const { return *of_kinds_[kind].cells; }
+  const DeepOpacityMap& light(std::size_t kind, std::size_t light) const { return *of_kinds_[kind].lights[light]; }
+
+  // Of all cells of a tree, active or not; of a tree that was not listed as it was before, empty where it never was.
+  //   (D5) G [1], 0 .. 1
+  std::span<const float> compensation(std::size_t tree, std::size_t light) const;
+  //   (D10) mean radiance of the environment's light, per band [1/sr]; empty where no sky shines
+  std::span<const glm::vec3> skyLight(std::size_t tree) const;
+
+  // Another number whenever the content is another; 0: there is none.
+  std::uint64_t cellsRevision(std::size_t kind) const;
+  std::uint64_t lightRevision(std::size_t kind, std::size_t light) const;
+  std::uint64_t compensationRevision(std::size_t tree, std::size_t light) const;
+  std::uint64_t skyLightRevision(std::size_t tree) const;
+
+  double lightSeconds() const { return light_seconds_; }  // wall time of the last update for the lights' maps
   double compensationSeconds() const { return compensation_seconds_; }  // and for all that G needs
-  std::vector<ProductCost> costs() const { return stand_->costs(); }    // of all updates
+  std::vector<ProductCost> costs() const { return foliage_->costs(); }  // of all updates
+  std::vector<ProductCost> lastCosts() const;                           // of the last one
 
  private:
-  GeometryEffort effort_;
-  std::unique_ptr<FoliageStand> stand_;
-  std::shared_ptr<const TreeMesh> tree_;
-  const DeepOpacityMap* light_ = nullptr;
-  const CellGrid* cells_ = nullptr;
-  std::vector<std::vector<float>> compensation_;
+  // What FoliageStand has as a prototype.
+  struct Prototype {
+    std::shared_ptr<const TreeMesh> mesh;  // not turned
+    std::uint32_t kind = 0;
+    float rotation = 0.f;
+    std::shared_ptr<const TreeMesh> turned;
+    bool used = false;
+  };
+  struct OfKind {
+    std::size_t prototype = 0;
+    const CellGrid* cells = nullptr;
+    std::array<const DeepOpacityMap*, kMostSuns> lights{};
+  };
+  // Values of all cells.
+  template <typename Value>
+  struct Cells {
+    std::uint64_t revision = 0;
+    std::vector<Value> values;
+  };
+  struct OfInstance {
+    std::array<Cells<float>, kMostSuns> compensation;
+    Cells<glm::vec3> sky_light;
+  };
+
+  void updateKinds(const Scene& scene);
+  void updatePrototypes(const Scene& scene);
+  void updateLights(const Scene& scene);
+
+  std::unique_ptr<FoliageStand> foliage_;
+  std::vector<Prototype> prototypes_;
+  StandTrees trees_;
+  std::vector<StandKind> kinds_;
+  std::vector<OfKind> of_kinds_;
+  std::vector<std::size_t> kind_of_tree_;
+  std::vector<OfInstance> of_instances_;
+
+  Stand stand_{.trees = {}};  // that kinds and trees are up to date for
+  std::vector<std::shared_ptr<const TreeMesh>> meshes_;
+  SceneSky sky_;  // that the lights are up to date for
+  std::vector<Sun> suns_;
+  SunAndSky shining_;
+  std::vector<StandLight> lights_;
+
+  std::vector<ProductCost> costs_before_;
   double light_seconds_ = 0., compensation_seconds_ = 0.;
 };
 

@@ -87,7 +87,7 @@ TEST(CellGrid, SpreadsValuesOfActiveCells) {
   const CellGrid cells = cellGrid(randomCrown({.leaf_side = 0.1f, .leaves = 30}, 2), 12);
   std::vector<float> of_active(cells.active.size());
   std::iota(of_active.begin(), of_active.end(), 1.f);
-  const std::vector<float> all = spread(cells, of_active);
+  const std::vector<float> all = spread<float>(cells, of_active);
   ASSERT_EQ(all.size(), cells.count());
   for (std::size_t number = 0; number < all.size(); ++number)
     EXPECT_EQ(all[number],

@@ -50,7 +50,7 @@ cp garbage.obj garbage.vdb
 mkdir folder folder.toml
 printf '[sun]\nzenit_deg = 3\n' >unknown_key.toml
 printf '[sun]\nzenith_deg = "high"\n' >wrong_type.toml
-printf '[sun]\nzenith_deg = 95\n' >out_of_range.toml
+printf '[sun]\nzenith_deg = 195\n' >out_of_range.toml
 printf '[sun\n' >broken.toml
 printf '[tree]\nfile = "none.obj"\n' >missing_mesh.toml
 printf 'g,omega,thickness,mu0\n0,0.9,1\n' >short.csv

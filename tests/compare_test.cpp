@@ -100,7 +100,7 @@ Validation smallValidation(bool periodic, float albedo) {
   scene.kinds[0].leaf.fill({.reflectance = 0.5f * albedo, .transmittance = 0.5f * albedo});
   if (periodic) scene.stand.period = layer.size;
   StandGeometry stand({.light_resolution = 128, .sample_resolution = 64, .cells = 8});
-  stand.update(scene, Model::sppg);
+  stand.update(scene);
   return validate(scene, stand, {.trace = {.paths = 200'000, .seed = 11}});
 }
 
@@ -128,7 +128,7 @@ TEST(R7_LeafIrradiance, OfFlatLeavesUnderTheSun) {
   scene.kinds[0].mesh = std::make_shared<const TreeMesh>(mesh);
   scene.kinds[0].leaf.fill({.reflectance = 0.f, .transmittance = 0.f});
   StandGeometry stand({.light_resolution = 32, .sample_resolution = 32, .cells = 4});
-  stand.update(scene, Model::sppg);
+  stand.update(scene);
   const Validation v = validate(scene, stand, {.trace = {.paths = 10'000, .seed = 2}});
   for (const ModelResult& m : v.models) {
     EXPECT_FLOAT_EQ(m.irradiance[0], 1.f) << nameOf(m.model);

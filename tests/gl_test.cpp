@@ -315,16 +315,16 @@ TEST(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
     const glm::vec2 half(0.6f);
     const Rectangles tree({{-half, half, 2.f}, {aside - half, aside + half, 0.f}});
     Scene scene = tree.scene();
-    scene.sun_zenith = 0.25f * kPi;
-    scene.sun_azimuth = azimuth;
+    scene.suns[0].zenith = 0.25f * kPi;
+    scene.suns[0].azimuth = azimuth;
     scene.camera = cameraFrom(90.f, 0.1f, 2);
-    const DeepOpacityMap map(*scene.kinds[0].mesh, scene.sun(), 64);
+    const DeepOpacityMap map(*scene.kinds[0].mesh, scene.sun().light(), 64);
     const CellGrid cells{
         .low = glm::vec3(-3.f), .cell_size = 2.f, .size = glm::ivec3(3), .slot = std::vector<std::uint32_t>(27)};
     const std::vector<float> quarter(27, 0.25f);
     const gl::ShadingData data{.sun = &map, .cells = &cells, .compensation = {quarter}};
 
-    const float cosine = std::cos(scene.sun_zenith);
+    const float cosine = std::cos(scene.suns[0].zenith);
     expectRadiance(gl::treePicture(scene, data, Model::ss), 1, 1,
                    cosine * perBand(scene, [](const LeafOptics& o) { return o.reflectance / kPi; }), kRounding);
     scene.camera->target = {aside, 0.f};

@@ -230,15 +230,15 @@ TEST(Neighbours, AreNotTooManyInOnePlace) {
   box.include(glm::vec3(1.f, 1.f, 3.f));
   Stand stand{.trees = std::vector<Placement>(64)};
   for (std::size_t i = 0; i < 64; ++i) stand.trees[i].position.x = 1e-3f * static_cast<float>(i);
-  EXPECT_NO_THROW(requireApart(stand, box));
+  EXPECT_NO_THROW(requireApart(stand, std::span(&box, 1)));
   stand.trees.push_back({.position = {5.f, 0.f, 0.f}});
-  EXPECT_NO_THROW(requireApart(stand, box));
+  EXPECT_NO_THROW(requireApart(stand, std::span(&box, 1)));
   stand.period = glm::vec2(5.f, 9.f);  // a copy of the last stands among them
-  EXPECT_THROW(requireApart(stand, box), InvalidInput);
+  EXPECT_THROW(requireApart(stand, std::span(&box, 1)), InvalidInput);
   stand = {.trees = {Placement{}}, .period = glm::vec2(0.251f)};
-  EXPECT_NO_THROW(requireApart(stand, box));
+  EXPECT_NO_THROW(requireApart(stand, std::span(&box, 1)));
   stand.trees.emplace_back();
-  EXPECT_THROW(requireApart(stand, box), InvalidInput);
+  EXPECT_THROW(requireApart(stand, std::span(&box, 1)), InvalidInput);
 }
 
 // Check that overlapping copies are all kept, as far as 8 widths, and that a period too short for the models is

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -67,6 +68,23 @@ TEST_F(ProductGraphTest, PassesStalenessOnOnce) {
   EXPECT_FALSE(graph.stale(maps, 0));
   graph.touchAll(maps);
   EXPECT_EQ(brought(depths, {0, 1, 2}), (Members{0, 1, 2}));
+}
+
+// Check that each making has a revision of its own, and that what is not made keeps its.
+TEST_F(ProductGraphTest, NumbersEachMaking) {
+  EXPECT_EQ(graph.revision(maps, 0), 0u);
+  brought(maps, {0, 1, 2});
+  brought(depths, {0, 1});
+  std::set<std::uint64_t> seen{0};
+  for (std::size_t member = 0; member < 3; ++member) EXPECT_TRUE(seen.insert(graph.revision(maps, member)).second);
+  for (std::size_t member = 0; member < 2; ++member) EXPECT_TRUE(seen.insert(graph.revision(depths, member)).second);
+  EXPECT_EQ(graph.revision(depths, 2), 0u);
+  const std::uint64_t kept = graph.revision(maps, 0);
+  graph.touch(maps, 1);
+  EXPECT_FALSE(seen.insert(graph.revision(maps, 1)).second);  // what is there is what was made
+  brought(maps, {0, 1, 2});
+  EXPECT_TRUE(seen.insert(graph.revision(maps, 1)).second);
+  EXPECT_EQ(graph.revision(maps, 0), kept);
 }
 
 // Check that an end by the caller keeps what is made, leaves the rest stale, and that progress rises to 1.

@@ -88,8 +88,8 @@ height = 32
   EXPECT_FLOAT_EQ(scene.kinds[0].leaf[2].transmittance, 0.4f);
   EXPECT_EQ(scene.kinds[0].wood_reflectance, glm::vec3(0.25f));
   EXPECT_EQ(scene.ground_albedo, glm::vec3(0.5f, 0.6f, 0.7f));
-  EXPECT_NEAR(scene.sun().y, -std::sqrt(0.75f), 1e-6f);  // from +y, 60 degrees from overhead
-  EXPECT_NEAR(scene.sun().z, -0.5f, 1e-6f);
+  EXPECT_NEAR(scene.sun().light().y, -std::sqrt(0.75f), 1e-6f);  // from +y, 60 degrees from overhead
+  EXPECT_NEAR(scene.sun().light().z, -0.5f, 1e-6f);
   ASSERT_TRUE(scene.camera);
   EXPECT_EQ(scene.camera->target, glm::vec3(1.f, 2.f, 3.f));
   EXPECT_NEAR(scene.camera->elevation, 0.5235988f, 1e-6f);
@@ -162,8 +162,8 @@ positions = [[0, 0], [9, 0, 90, "second cherry"], [18, 0, "cherry"], [27, 0], [3
 // Check that what is wrong is named with its file, line, key, value and rule.
 TEST_F(SceneFile, NamesWhatIsWrong) {
   write("tree.obj", kSquare);
-  EXPECT_EQ(refusal("[sun]\nzenith_deg = 95\n"), "s.toml:2: sun.zenith_deg = 95: must be in [0, 89.9]");
-  EXPECT_EQ(refusal("[sun]\nzenith_deg = nan\n"), "s.toml:2: sun.zenith_deg = nan: must be in [0, 89.9]");
+  EXPECT_EQ(refusal("[sun]\nzenith_deg = 195\n"), "s.toml:2: sun.zenith_deg = 195: must be in [0, 180]");
+  EXPECT_EQ(refusal("[sun]\nzenith_deg = nan\n"), "s.toml:2: sun.zenith_deg = nan: must be in [0, 180]");
   EXPECT_EQ(refusal("[camera]\nfield_of_view_deg = 0.05\n"),
             "s.toml: camera.field_of_view_deg = 0.05: must be 0 or in [0.1, 150]");
   EXPECT_EQ(refusal("[sun]\nzenit = 1\n"), "s.toml:2: unknown key \"zenit\" in [sun]; see: sunfleck --help scene");
@@ -188,30 +188,26 @@ TEST_F(SceneFile, KnowsBuiltinScenes) {
 }
 
 // Check the geometry of a stand of several trees: a tree beside another loses G on the far side only, so that two trees
-// far apart have the G of a lone one, and two that touch have more of it; and that rotated trees and several kinds are
-// refused.
+// far apart have the G of a lone one, and two that touch have more of it; and that the irradiance of leaves is refused
+// for rotated trees and several kinds.
 TEST_F(SceneFile, StandsOfSeveralTreesShareTheirLight) {
   Scene scene = readScene("slab");
   scene.stand = Stand{};
   StandGeometry stand({.light_resolution = 64, .sample_resolution = 64, .cells = 6});
-  const auto updated = [&]() -> const std::vector<std::vector<float>>& {
-    stand.update(scene, Model::sppg);
-    return stand.compensation();
-  };
-  const auto mean = [](const std::vector<float>& g) {
+  const auto mean = [&](std::size_t tree) {
+    stand.update(scene);
     double sum = 0.;
-    for (const float value : g) sum += double{value};
-    return sum / static_cast<double>(g.size());
+    for (const float value : stand.compensation(tree, 0)) sum += double{value};
+    return sum / static_cast<double>(stand.compensation(tree, 0).size());
   };
-  const double lone = mean(updated()[0]);
+  const double lone = mean(0);
   scene.stand.trees = {{.position = glm::vec3(0.f)}, {.position = glm::vec3(1000.f, 0.f, 0.f)}};
-  ASSERT_EQ(updated().size(), 2u);
-  EXPECT_DOUBLE_EQ(mean(updated()[0]), lone);
+  EXPECT_DOUBLE_EQ(mean(0), lone);
   scene.stand.trees[1].position.x = 2.f;
-  EXPECT_GT(mean(updated()[0]), lone);
+  EXPECT_GT(mean(0), lone);
   const auto refused = [&] {
     try {
-      updated();
+      requireModelled(scene);
     } catch (const InvalidInput& e) {
       return std::string(e.what());
     }
@@ -219,12 +215,12 @@ TEST_F(SceneFile, StandsOfSeveralTreesShareTheirLight) {
   };
   scene.stand.trees[1].rotation = 0.5235988f;
   EXPECT_EQ(refused(),
-            "slab: stand.positions: rotation_deg of tree 2 = 30: must be 0 for the models: their maps serve translated "
-            "copies only (trace takes any)");
+            "slab: stand.positions: rotation_deg of tree 2 = 30: must be 0 for the models' irradiance of leaves "
+            "(trace and render take any)");
   scene.kinds.push_back(scene.kinds[0]);
   EXPECT_EQ(
       refused(),
-      "slab: number of kinds of trees = 2: must be 1 for the models, which know one leaf alone (trace and voxelize "
+      "slab: number of kinds of trees = 2: must be 1 for the models' irradiance of leaves (trace, render and voxelize "
       "--stand take any)");
 }
 
@@ -253,8 +249,8 @@ TEST_F(SceneFile, PlacesPeriodicTreesInOnePeriod) {
 TEST_F(SceneFile, BringsSunAndSky) {
   const auto lightOf = [&](const std::string& toml) { return sunAndSky(readScene(write("s.toml", toml))); };
   const Scene scene = readScene(write("s.toml", "[sun]\nirradiance = [1, 0.9, 0.5]\ndiameter_deg = 0.533\n"));
-  EXPECT_EQ(scene.sun_irradiance, glm::vec3(1.f, 0.9f, 0.5f));
-  EXPECT_NEAR(scene.sun_diameter, 0.0093026, 1e-6);
+  EXPECT_EQ(scene.sun().irradiance, glm::vec3(1.f, 0.9f, 0.5f));
+  EXPECT_NEAR(scene.sun().diameter, 0.0093026, 1e-6);
   EXPECT_EQ(sunAndSky(scene).sky, nullptr);
   EXPECT_NEAR(lightOf("[sky]\nkind = \"uniform\"\n").sky->irradiance().y, 0.2, 1e-7);
   const glm::dvec3 coloured = lightOf("[sky]\nkind = \"overcast\"\nirradiance = [0.1, 0.2, 0.3]\n").sky->irradiance();
@@ -265,10 +261,11 @@ TEST_F(SceneFile, BringsSunAndSky) {
   const SunAndSky own = lightOf(clear);
   EXPECT_GT(own.sky->irradiance().z, own.sky->irradiance().x);                                       // blue
   EXPECT_GT(own.sky->radiance({0.f, 0.8f, 0.6f}).x, 2.f * own.sky->radiance({0.f, -0.8f, 0.6f}).x);  // towards the sun
-  EXPECT_EQ(own.sun, glm::vec3(1.f));
+  EXPECT_EQ(own.suns.front(), glm::vec3(1.f));
   const SunAndSky warm = lightOf(clear + "coloured_sun = true\nirradiance = 0.25\n");
-  EXPECT_NEAR(0.2126f * warm.sun.x + 0.7152f * warm.sun.y + 0.0722f * warm.sun.z, 1.f, 1e-6f);
-  EXPECT_GT(warm.sun.x, 1.2f * warm.sun.z);
+  const glm::vec3 sun = warm.suns.front();
+  EXPECT_NEAR(0.2126f * sun.x + 0.7152f * sun.y + 0.0722f * sun.z, 1.f, 1e-6f);
+  EXPECT_GT(sun.x, 1.2f * sun.z);
   const glm::dvec3 sky = warm.sky->irradiance();
   EXPECT_NEAR((sky.x + sky.y + sky.z) / 3., 0.25, 1e-6);
   EXPECT_NEAR(sky.z / sky.x, own.sky->irradiance().z / own.sky->irradiance().x, 1e-5);
@@ -286,6 +283,30 @@ TEST_F(SceneFile, BringsSunAndSky) {
   EXPECT_NEAR((seen->irradiance().x + seen->irradiance().y + seen->irradiance().z) / 3., 0.2, 1e-6);
   // The third pixel is right of the middle, which looks along +y: from there 45 degrees towards +x.
   EXPECT_NEAR(seen->radiance({0.6f, 0.6f, 0.5f}).x, 2.f * seen->radiance({0.6f, 0.6f, 0.5f}).z, 1e-6f);
+}
+
+// Check several suns, each with its own keys; that one below the horizon gives no light, nor lights a clear sky; and
+// that more than four are refused.
+TEST_F(SceneFile, BringsSeveralSuns) {
+  const Scene scene = readScene(write("s.toml", R"([[sun]]
+zenith_deg = 95
+irradiance = 2
+[[sun]]
+zenith_deg = 60
+azimuth_deg = 90
+irradiance = [0.1, 0.2, 0.3]
+[sky]
+kind = "preetham"
+)"));
+  ASSERT_EQ(scene.suns.size(), 2u);
+  EXPECT_EQ(scene.suns[0].irradiance, glm::vec3(2.f));
+  EXPECT_NEAR(scene.suns[1].light().z, -0.5f, 1e-6f);
+  const SunAndSky light = sunAndSky(scene);
+  EXPECT_EQ(light.suns, (std::vector<glm::vec3>{glm::vec3(0.f), {0.1f, 0.2f, 0.3f}}));
+  EXPECT_EQ(light.sky, nullptr);
+  EXPECT_EQ(refusal("[[sun]]\n[[sun]]\n[[sun]]\n[[sun]]\n[[sun]]\n"),
+            "s.toml:1: number of [[sun]] = 5: must be from 1 to 4");
+  EXPECT_EQ(refusal("[[sun]]\n[[sun]]\nzenith_deg = 195\n"), "s.toml:3: sun.zenith_deg = 195: must be in [0, 180]");
 }
 
 TEST_F(SceneFile, RefusesWhatNoSunOrSkyIs) {

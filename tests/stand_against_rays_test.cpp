@@ -247,7 +247,7 @@ TEST(D10_StandAgainstRays, SkyLightOfLeaves) {
     const CellGrid& cells = pair.stand.cells(0);
     std::vector<float> light;
     for (const glm::vec3& of_cell : pair.stand.skyLight(0)) light.push_back(of_cell.x);
-    const std::vector<float> everywhere = spread(cells, light);
+    const std::vector<float> everywhere = spread<float>(cells, light);
     const std::vector<glm::vec3> centres = leafCentres(*mesh);
     double mean = 0.;
     for (std::size_t leaf = 0; leaf < areas.size(); ++leaf)

@@ -39,7 +39,7 @@ std::vector<float> compensationBy(const Scene& scene, const std::vector<Directio
   stand.addPrototype(scene.kinds[0].mesh);
   for (const Placement& tree : scene.stand.trees) stand.add(0, tree.position);
   stand.setPeriod(scene.stand.period);
-  const Direction sun = scene.sun();
+  const Direction sun = scene.sun().light();
   stand.setLights(std::span(&sun, 1));
   const std::size_t first = 0;
   stand.prepareCompensation(std::span(&first, 1));

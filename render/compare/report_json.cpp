@@ -24,7 +24,7 @@ void add(Json& json, const Validation& v) {
                    {"mean_depth", v.mean_depth},
                    {"mean_thickness", v.mean_thickness},
                    {"albedo", v.optics().albedo()},
-                   {"sun_zenith_deg", double{v.scene.sun_zenith} * degrees},
+                   {"sun_zenith_deg", double{v.scene.sun().zenith} * degrees},
                    {"wood", v.effort.with_wood}};
   json["reference"] = {{"paths", v.reference.paths},
                        {"seed", v.effort.trace.seed},

@@ -34,12 +34,18 @@ std::optional<double> categoryNoise(const ForwardResult& reference, std::span<co
 
 std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& bands) {
   const SunAndSky shining = sunAndSky(scene);
+  std::vector<std::size_t> lit;
+  for (std::size_t i = 0; i < shining.suns.size(); ++i)
+    if (shining.suns[i] != glm::vec3(0.f)) lit.push_back(i);
+  require(lit.size() <= 1, (scene.origin.empty() ? "" : scene.origin + ": ") + "number of suns that shine", lit.size(),
+          "1 for Monte Carlo (render takes several; light adds up: trace one after the other)");
+  const Sun overhead{.irradiance = glm::vec3(0.f)}, &sun = lit.empty() ? overhead : scene.suns[lit[0]];
   std::vector<TraceLight> lights;
   for (const int band : bands) {
-    TraceLight& light = lights.emplace_back(TraceLight{.sun = scene.sun(),
+    TraceLight& light = lights.emplace_back(TraceLight{.sun = sun.light(),
                                                        .ground_albedo = scene.ground_albedo[band],
-                                                       .sun_irradiance = shining.sun[band],
-                                                       .sun_diameter = scene.sun_diameter,
+                                                       .sun_irradiance = lit.empty() ? 0.f : shining.suns[lit[0]][band],
+                                                       .sun_diameter = sun.diameter,
                                                        .sky = shining.sky,
                                                        .sky_band = band});
     if (scene.ground_rpv) light.ground_rpv = (*scene.ground_rpv)[static_cast<std::size_t>(band)];

@@ -32,7 +32,7 @@ void requireDrawable(const Scene& scene, const Camera& camera) {
 
 // These are the program's own mistakes, not the user's.
 void requireFitting(const Scene& scene, const ShadingData& data, Model model) {
-  if (!data.sun || glm::length(data.sun->along() - scene.sun()) > kSameDirection)
+  if (!data.sun || glm::length(data.sun->along() - scene.sun().light()) > kSameDirection)
     throw std::invalid_argument("treePicture: the opacity map is not along the scene's sun");
   if (model != Model::sppg) return;
   bool fits = data.cells && data.compensation.size() == scene.stand.trees.size();
