@@ -23,6 +23,7 @@
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "grid/density_grid.hpp"
+#include "render/compare/pixel_rays.hpp"
 #include "render/compare/scene_media.hpp"
 #include "render/compare/validation.hpp"
 #include "render/image_file.hpp"

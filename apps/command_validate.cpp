@@ -14,6 +14,7 @@
 #include "core/whole_file.hpp"
 #include "plants/species.hpp"
 #include "render/compare/paper_table.hpp"
+#include "render/compare/pixel_rays.hpp"
 #include "render/compare/report_html.hpp"
 #include "render/compare/report_json.hpp"
 #include "render/compare/validation.hpp"

@@ -4,7 +4,6 @@
 
 #include "core/image.hpp"
 #include "render/leaf_models.hpp"
-#include "render/reference/camera_trace.hpp"
 #include "render/scene.hpp"
 #include "render/stand_geometry.hpp"
 
@@ -18,8 +17,5 @@ void showGround(Scene& scene);
 
 // The scene shaded by a model on the GPU; `stand` is up to date for it and the model.
 Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress = {});
-
-// The rays of the scene's camera.
-PixelRays pixelRays(const Scene& scene);
 
 }  // namespace sunfleck::apps

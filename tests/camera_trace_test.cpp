@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -163,6 +164,73 @@ TEST(R2_CameraTrace, RadianceIntegratesToTheForwardReflectance) {
               5. * std::hypot(std::sqrt(variance), forward.reflected.standard_error) + 1e-3);
 }
 
+// Check a picture in perspective against the closed form: a flat leaf, seen from an eye, has Lambert's radiance over
+// the part of the picture that it covers by the rules of a pinhole, and none beside it; here turned away from the
+// picture's plane and aside of its middle. Pixels on the leaf's edges are the only noise.
+TEST(R30_CameraTrace, AFlatLeafCoversWhatAPinholeSees) {
+  TreeMesh mesh;
+  const glm::vec3 middle(0.5f, -0.3f, 3.f), half_x(0.8f, 0.f, 0.3f), half_y(0.f, 0.9f, -0.2f);
+  addPolygon(mesh, mesh.leaf_triangles, rectangle(middle, half_x, half_y));
+  finish(mesh, "leaf");
+  const RayScene scene(mesh, Stand{}, true);
+  const float zenith = 40.f * kDegree;
+  const TraceLight light{.sun = sunlight(zenith, 1.f), .leaf = {.reflectance = 0.3f, .transmittance = 0.6f}};
+  const glm::vec3 normal = glm::normalize(glm::cross(half_x, half_y));
+  const double radiance = 0.3 * double{-glm::dot(normal, light.sun)} * kInversePi;
+  for (const float depth : {1.f, 40.f, 4000.f}) {  // of the leaf below the eye [m]; the last nearly parallel
+    const glm::vec3 eye(0.f, 0.f, 3.f + depth);
+    const float half = 3.f / depth;  // of the picture, at 1 m before the eye [m]
+    const PixelRays rays{.corner = {-half, half, -1.f},
+                         .right_step = {2.f * half / 64, 0, 0},
+                         .down_step = {0, -2.f * half / 64, 0},
+                         .width = 64,
+                         .height = 64,
+                         .eye = eye};
+    double area = 0.;  // of the leaf in the picture [m^2]
+    std::array<glm::dvec2, 4> corners{};
+    const float signs[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const glm::vec3 from_eye = middle + signs[i][0] * half_x + signs[i][1] * half_y - eye;
+      corners[i] = glm::dvec2(from_eye) / double{-from_eye.z};
+      ASSERT_LT(std::max(std::abs(corners[i].x), std::abs(corners[i].y)), double{half});
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      const glm::dvec2 a = corners[i], b = corners[(i + 1) % 4];
+      area += 0.5 * (a.x * b.y - a.y * b.x);
+    }
+    const CameraResult result = traceCamera(scene, light, rays, 0.f, {.paths = 64 * 64 * 64});
+    const double expected = radiance * area / std::pow(2. * double{half}, 2);
+    // Samples are even over a pixel, so that the edges leave less noise than their standard error tells.
+    EXPECT_NEAR(result.mean.value, expected, 5. * result.mean.standard_error) << depth;
+    EXPECT_LT(result.mean.standard_error, 4e-3 * expected);
+    for (const float value : result.radiance.values) EXPECT_LE(value, static_cast<float>(radiance) * (1.f + 1e-5f));
+  }
+}
+
+// Check what an eye sees that stands in a periodic stand, over the ground: not what is behind it. Above the eye stands
+// a sheet that is not in sight; the sun comes from the side through no leaf, and the ground shows its albedo.
+TEST(R30_CameraTrace, AnEyeSeesNothingBehindItself) {
+  TreeMesh mesh;
+  addPolygon(mesh, mesh.leaf_triangles, rectangle({0, 0, 2}, {0.05f, 0, 0}, {0, 0.05f, 0}));
+  finish(mesh, "sheet");
+  for (const Stand& stand : {Stand{}, Stand{.period = glm::vec2(5.f)}}) {
+    const RayScene scene(mesh, stand, true);
+    const TraceLight light{.sun = sunlight(0.5f, 0.f), .ground_albedo = 0.5f};
+    PixelRays rays{.corner = {-0.01f, -0.01f, -1.f},
+                   .right_step = {0.02f / 8, 0, 0},
+                   .down_step = {0, 0.02f / 8, 0},
+                   .width = 8,
+                   .height = 8,
+                   .eye = glm::vec3(0.f, 0.f, 1.9f)};
+    const double ground = 0.5 * std::cos(0.5) * kInversePi;
+    // The leaf is 1e-2 m^2 at 2 m: it sends back 1e-3 of the light below it at the most.
+    EXPECT_NEAR(traceCamera(scene, light, rays, 0.f, {.paths = 4096}).mean.value, ground, 2e-3 * ground);
+    rays.eye->z = 2.05f;  // now the leaf is in front, and covers all that is seen
+    EXPECT_NEAR(traceCamera(scene, {.sun = light.sun}, rays, 0.f, {.paths = 4096}).mean.value,
+                double{LeafOptics{}.reflectance} * std::cos(0.5) * kInversePi, 1e-6);
+  }
+}
+
 // Check that the bits depend on the seed alone, and that work ended early is whole passes.
 TEST(R2_CameraTrace, IsTheSameForAnyNumberOfThreads) {
   const TreeMesh mesh = leafBox(100, 1);
@@ -200,6 +268,12 @@ TEST(R2_CameraTrace, RefusesInvalidInput) {
   rays.right_step.x = std::numeric_limits<float>::infinity();
   EXPECT_THROW(trace(rays, 0.f), InvalidInput);
   EXPECT_THROW(trace(good, std::nanf("")), InvalidInput);
+  rays = good;
+  rays.eye = glm::vec3(0.f, std::numeric_limits<float>::quiet_NaN(), 0.f);
+  EXPECT_THROW(trace(rays, 0.f), InvalidInput);
+  rays.eye = glm::vec3(0.f);
+  rays.corner.z = 0.f;  // pixels in the plane of the eye
+  EXPECT_THROW(trace(rays, 0.f), InvalidInput);
   const RayScene periodic(mesh, {.period = glm::vec2(2.f)}, true);
   EXPECT_THROW(traceCamera(periodic, {.ground_albedo = 0.1f}, good, 0.4f, {}), InvalidInput);
 }

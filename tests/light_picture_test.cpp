@@ -112,6 +112,22 @@ TEST(R23_LightPicture, ShowsGlossMediaAndSkyToo) {
               traceCamera(scene, light, rays, -1.f, {.paths = 64 * kSide * kSide}));
 }
 
+// Check that both ways show the same from an eye near the stand, aside of the middle, where pixels at the edge see less
+// of it than those in the middle.
+TEST(R30_LightPicture, ShowsWhatAnEyeNearbySees) {
+  const RayScene scene(leavesAndPlank(), Stand{}, true);
+  const TraceLight light{.sun = sunlight(0.9f, 1.f), .leaf = {.reflectance = 0.5f, .transmittance = 0.45f}};
+  PixelRays rays = picture(sunlight(0.8f, -1.f), 0.9f);
+  rays.eye = glm::vec3(0.3f, -0.2f, 0.f) - 2.2f * rays.sight;
+  rays.corner += 1.9f * rays.sight;
+  ASSERT_TRUE(LightPictureJob::suits(scene, {light}, rays));
+  expectAlike(byLight(scene, {light}, rays).front(),
+              traceCamera(scene, light, rays, -1.f, {.paths = 64 * kSide * kSide}));
+  rays.eye = glm::vec3(0.f);
+  EXPECT_FALSE(LightPictureJob::suits(scene, {light}, rays));
+  EXPECT_THROW(LightPictureJob(scene, {light}, rays, 64), InvalidInput);
+}
+
 // Check the standard errors: the spread of a pixel's and of the mean's estimates over 60 seeds has an error of 1 / 11.
 TEST(R23_LightPicture, StandardErrorsTellTheSpread) {
   const RayScene scene(leavesAndPlank(), Stand{}, true);

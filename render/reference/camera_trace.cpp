@@ -30,12 +30,14 @@ template <int N>
 struct Packet {
   static constexpr std::size_t kSize = RayScene::Geometry::kPacket;
   std::vector<glm::vec3> from;
+  std::vector<Direction> sights;
   std::vector<PathRandom> random;
   std::vector<int> x, y;  // pixel
   std::vector<Seen<N>> seen{kSize};
 
-  void add(const glm::vec3& start, const PathRandom& of_path, int pixel_x, int pixel_y) {
+  void add(const glm::vec3& start, const Direction& sight, const PathRandom& of_path, int pixel_x, int pixel_y) {
     from.push_back(start);
+    sights.push_back(sight);
     random.push_back(of_path);
     x.push_back(pixel_x);
     y.push_back(pixel_y);
@@ -43,6 +45,7 @@ struct Packet {
   bool full() const { return from.size() == kSize; }
   void clear() {
     from.clear();
+    sights.clear();
     random.clear();
     x.clear();
     y.clear();
@@ -56,9 +59,16 @@ void validate(const PixelRays& rays) {
   require(rays.height > 0 && rays.height <= 65536, "picture height", rays.height, "from 1 to 65536");
   const double length = glm::length(glm::dvec3(rays.sight));
   require(std::abs(length - 1.) < 1e-4, "length of the direction of sight", length, "1");
-  for (const glm::vec3& v : {rays.corner, rays.right_step, rays.down_step})
+  for (const glm::vec3& v : {rays.corner, rays.right_step, rays.down_step, rays.eye.value_or(glm::vec3(0.f))})
     for (int axis = 0; axis < 3; ++axis)
-      require(std::abs(v[axis]) <= 1e7f, "corner or step of the picture's pixels", v[axis], "finite and at most 1e7 m");
+      require(std::abs(v[axis]) <= 1e7f, "eye, corner or step of the picture's pixels", v[axis],
+              "finite and at most 1e7 m");
+  if (!rays.eye) return;
+  // All places lie before the eye if the corners do.
+  const glm::dvec3 right(rays.right_step), down(rays.down_step), corner(rays.corner);
+  const double volume = std::abs(glm::dot(glm::cross(right, down), corner));
+  require(volume > 1e-6 * glm::length(right) * glm::length(down) * glm::length(corner),
+          "distance of the picture's pixels from the eye", volume, "above 0");
 }
 
 struct CameraJob::Parts {
@@ -72,7 +82,7 @@ struct CameraJob::Parts {
         followed(until),
         optics(bands, scene),
         light(bands) {
-    rays.corner -= scene.origin;
+    (rays.eye ? *rays.eye : rays.corner) -= scene.origin;
   }
 
   int tilesAcross() const { return (rays.width + kTileSide - 1) / kTileSide; }
@@ -159,7 +169,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
     using Lanes = std::remove_cvref_t<decltype(optics.ground().reflectance)>;
     Packet<Lanes::kBands> packet;
     const auto finish = [&] {
-      paths.look(packet.from, rays.sight, packet.random, packet.seen);
+      paths.look(packet.from, packet.sights, packet.random, packet.seen);
       for (std::size_t i = 0; i < packet.random.size(); ++i)
         for (int band = 0; band < band_count; ++band) {
           const Seen<Lanes::kBands>& seen = packet.seen[i];
@@ -181,9 +191,10 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
         for (std::uint32_t i = 0; i < samples; ++i) {
           PathRandom random(set, pixel_of_run * samples + i, i);
           const Pair at = random.pair();
-          const glm::vec3 on_line = rays.corner + (static_cast<float>(x) + at.u) * rays.right_step +
-                                    (static_cast<float>(y) + at.v) * rays.down_step;
-          packet.add(paths.startOf(on_line, rays.sight), random, x, y);
+          const glm::vec3 place = rays.corner + (static_cast<float>(x) + at.u) * rays.right_step +
+                                  (static_cast<float>(y) + at.v) * rays.down_step;
+          const Direction sight = rays.eye ? glm::normalize(place) : rays.sight;
+          packet.add(rays.eye ? paths.startBefore(*rays.eye, sight) : paths.startOf(place, sight), sight, random, x, y);
           if (packet.full()) finish();
         }
       }

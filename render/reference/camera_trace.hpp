@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/image.hpp"
@@ -14,12 +15,14 @@
 
 namespace sunfleck {
 
-// An orthographic picture's rays: pixel (x, y) of width * height spans `corner + x * right_step + y * down_step` and
-// the steps; all rays travel along `sight`, a unit vector, and see the whole line they lie on.
+// A picture's lines of sight: pixel (x, y) of width * height spans `corner + x * right_step + y * down_step` and the
+// steps. Those of an orthographic picture pass there along `sight` and see the whole line they lie on; those from an
+// eye go to there from it (R30).
 struct PixelRays {
-  glm::vec3 corner{0.f}, right_step{0.f}, down_step{0.f};  // [m]
-  Direction sight{0.f, 0.f, -1.f};
+  glm::vec3 corner{0.f}, right_step{0.f}, down_step{0.f};  // [m]; with an eye, corner counts from it
+  Direction sight{0.f, 0.f, -1.f};                         // unit; with an eye it is not used
   int width = 0, height = 0;
+  std::optional<glm::vec3> eye;  // [m]
 };
 
 // Throws InvalidInput on sizes and vectors out of their ranges.
@@ -38,10 +41,10 @@ struct CameraResult {
   double seconds = 0., cpu_seconds = 0.;
 };
 
-// (R2) Monte Carlo from the camera to the light, with sun and sky sampled at every hit (R18); where a line of sight
-// meets nothing it shows the sky. A unit adds `samples_per_unit` to each pixel of a square tile, evenly spread over the
-// pixel. A ground plane without end (albedo > 0) lies at `ground_height` [m] and is seen from above; under a periodic
-// stand it must not lie above the bottom of the box.
+// (R2, R30) Monte Carlo from the camera to the light, with sun and sky sampled at every hit (R18); where a line of
+// sight meets nothing it shows the sky. A unit adds `samples_per_unit` to each pixel of a square tile, evenly spread
+// over the pixel. A ground plane without end (albedo > 0) lies at `ground_height` [m] and is seen from above; under a
+// periodic stand it must not lie above the bottom of the box.
 class CameraJob final : public TraceJob {
  public:
   //   scene  must outlive the job

@@ -17,6 +17,28 @@ namespace {
 
 // Share of a stand that a picture must show, as its box appears in it, for paths of light to be worth their while.
 constexpr double kLeastShown = 0.5;
+// The least distance of a stand's box from the eye, as a share of the largest: few paths pass what is near, and each of
+// them counts much.
+constexpr float kNearest = 1.f / 3.f;
+
+// The stand's box as the picture sees it.
+struct BoxInPicture {
+  glm::vec2 low{std::numeric_limits<float>::infinity()}, high{-low};            // [pixel]
+  float nearest = std::numeric_limits<float>::infinity(), farthest = -nearest;  // see PixelOfPoint::place
+};
+
+BoxInPicture inPicture(const Bounds& box, const PixelOfPoint& pixels) {
+  BoxInPicture seen;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 at = pixels.place({corner & 1 ? box.low.x : box.high.x, corner & 2 ? box.low.y : box.high.y,
+                                       corner & 4 ? box.low.z : box.high.z});
+    seen.low = glm::min(seen.low, glm::vec2(at));
+    seen.high = glm::max(seen.high, glm::vec2(at));
+    seen.nearest = std::min(seen.nearest, at.z);
+    seen.farthest = std::max(seen.farthest, at.z);
+  }
+  return seen;
+}
 
 template <int N>
 class PicturePaths {
@@ -24,8 +46,8 @@ class PicturePaths {
   //   share  of the incident light that a path starts with, by the area of a pixel's beam [1/m^2]
   //   flux   of each band's incident light [m^2]
   PicturePaths(const RayScene::Geometry& scene, const IncidentLight& light, const SceneOptics<N>& optics,
-               const PixelOfPoint& pixels, const Direction& to_eye, double share, std::size_t bands, UnitTally& tally)
-      : scene_(scene), light_(light), optics_(optics), pixels_(pixels), to_eye_(to_eye), bands_(bands), tally_(tally) {
+               const PixelOfPoint& pixels, double share, std::size_t bands, UnitTally& tally)
+      : scene_(scene), light_(light), optics_(optics), pixels_(pixels), bands_(bands), tally_(tally) {
     for (std::size_t band = 0; band < bands; ++band)
       flux_[static_cast<int>(band)] = static_cast<float>(share * light.flux(static_cast<int>(band)));
   }
@@ -47,25 +69,26 @@ class PicturePaths {
   // With flux F arriving, what is met sends F f cos per solid angle to the camera, the BRDF or BTDF f being the same
   // both ways: over the area of the pixel's beam, its radiance.
   void show(const Hit& hit, const glm::vec3& direction, const BandLanes<N>& weight) {
-    const std::optional<std::size_t> pixel = pixels_.number(hit.position);
-    if (!pixel) return;
-    BandLanes<N> radiance = optics_.sent(hit, direction, to_eye_);
+    const std::optional<PixelOfPoint::Seen> seen = pixels_.seen(hit.position);
+    if (!seen) return;
+    const Direction& to_eye = seen->to_eye;
+    BandLanes<N> radiance = optics_.sent(hit, direction, to_eye);
     radiance *= weight;
     if (!(radiance.largest() > 0.f)) return;
-    const glm::vec3 side = glm::dot(hit.normal, to_eye_) > 0.f ? hit.normal : -hit.normal;
+    const glm::vec3 side = glm::dot(hit.normal, to_eye) > 0.f ? hit.normal : -hit.normal;
     const glm::vec3 from = scene_.leave(hit.position, side);
-    if (scene_.blocked(from, to_eye_)) return;
-    if (!scene_.media.empty()) radiance *= scene_.transmittance(from, to_eye_);
+    if (scene_.blocked(from, to_eye)) return;
+    if (!scene_.media.empty()) radiance *= scene_.transmittance(from, to_eye);
     radiance *= flux_;
+    radiance *= 1.f / seen->beam;
     for (std::size_t band = 0; band < bands_; ++band)
-      tally_.add(*pixel * bands_ + band, double{radiance[static_cast<int>(band)]});
+      tally_.add(seen->pixel * bands_ + band, double{radiance[static_cast<int>(band)]});
   }
 
   const RayScene::Geometry& scene_;
   const IncidentLight& light_;
   const SceneOptics<N>& optics_;
   const PixelOfPoint& pixels_;
-  Direction to_eye_;
   BandLanes<N> flux_;  // of a path, by the area of a pixel's beam [1]
   std::size_t bands_;
   UnitTally& tally_;
@@ -81,7 +104,7 @@ struct LightPictureJob::Parts {
         paths_per_unit(per_unit),
         light(scene, bands),
         optics(bands, scene) {
-    rays.corner -= scene.origin;
+    (rays.eye ? *rays.eye : rays.corner) -= scene.origin;
   }
   std::size_t pixels() const { return static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height); }
 
@@ -98,14 +121,8 @@ bool LightPictureJob::suits(const RayScene& scene, const std::vector<TraceLight>
   if (geometry.period || std::ranges::any_of(bands, [](const auto& b) { return b.largestGroundAlbedo() > 0.f; }))
     return false;
   const PixelOfPoint pixels(rays);
-  const Bounds& box = scene.box();
-  glm::vec2 low(std::numeric_limits<float>::infinity()), high = -low;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec2 at = pixels.place({corner & 1 ? box.low.x : box.high.x, corner & 2 ? box.low.y : box.high.y,
-                                       corner & 4 ? box.low.z : box.high.z});
-    low = glm::min(low, at);
-    high = glm::max(high, at);
-  }
+  const auto [low, high, nearest, farthest] = inPicture(scene.box(), pixels);
+  if (rays.eye && !(nearest > kNearest * farthest)) return false;
   const glm::dvec2 shown = glm::max(
       glm::dvec2(0.), glm::dvec2(glm::min(high, glm::vec2(rays.width, rays.height)) - glm::max(low, glm::vec2(0.f))));
   const glm::dvec2 all(high - low);
@@ -122,6 +139,8 @@ LightPictureJob::LightPictureJob(const RayScene& scene, std::vector<TraceLight> 
   for (const TraceLight& light : bands)
     require(light.largestGroundAlbedo() == 0.f, "ground albedo", light.largestGroundAlbedo(),
             "0 in a picture by paths of light");
+  if (rays.eye && !(inPicture(scene.box(), PixelOfPoint(rays)).nearest > 0.f))
+    throw InvalidInput("picture by paths of light: must have all of the stand before the eye");
   parts_ = std::make_unique<Parts>(scene, std::move(bands), rays, paths_per_unit);
 }
 
@@ -143,8 +162,8 @@ void LightPictureJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& t
   const std::uint64_t count = parts_->paths_per_unit;
   const PixelOfPoint pixels(parts_->rays);
   parts_->optics.visit([&](const auto& optics) {
-    PicturePaths paths(parts_->scene, parts_->light, optics, pixels, -parts_->rays.sight,
-                       1. / (static_cast<double>(count) * pixels.beam()), parts_->bands.size(), tally);
+    PicturePaths paths(parts_->scene, parts_->light, optics, pixels, 1. / (static_cast<double>(count) * pixels.beam()),
+                       parts_->bands.size(), tally);
     const EvenSet set(Stream::light_picture, seed, unit);
     for (std::uint64_t i = 0; i < count && !stopped.load(std::memory_order_relaxed); ++i) {
       PathRandom random(set, unit * count + i, static_cast<std::uint32_t>(i));

@@ -270,17 +270,18 @@ bool RayScene::Geometry::blocked(const glm::vec3& from, const glm::vec3& directi
   return ray.tfar < 0.f;
 }
 
-void RayScene::Geometry::closest(std::span<const glm::vec3> from, const glm::vec3& direction,
+void RayScene::Geometry::closest(std::span<const glm::vec3> from, std::span<const Direction> directions,
                                  std::span<const float> reach, std::span<Hit> hits) const {
   if (period) {
-    for (std::size_t i = 0; i < from.size(); ++i) hits[i] = closest(from[i], direction, Coherence::coherent, reach[i]);
+    for (std::size_t i = 0; i < from.size(); ++i)
+      hits[i] = closest(from[i], directions[i], Coherence::coherent, reach[i]);
     return;
   }
   alignas(64) std::array<int, kPacket> valid{};
   RTCRayHit16 rays;
   for (std::size_t i = 0; i < from.size(); ++i) {
     valid[i] = -1;
-    set(rays.ray, i, from[i], direction, reach[i]);
+    set(rays.ray, i, from[i], directions[i], reach[i]);
     rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
@@ -292,7 +293,7 @@ void RayScene::Geometry::closest(std::span<const glm::vec3> from, const glm::vec
     hit.geomID = rays.hit.geomID[i];
     hit.primID = rays.hit.primID[i];
     hit.instID[0] = rays.hit.instID[0][i];
-    hits[i] = describe(hit, from[i], direction, rays.ray.tfar[i]);
+    hits[i] = describe(hit, from[i], directions[i], rays.ray.tfar[i]);
   }
 }
 

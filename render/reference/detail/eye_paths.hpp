@@ -44,8 +44,8 @@ class EyePaths {
         ground_(optics.ground().reflectance.largest() > 0.f ? ground : -kInfinity),
         reach_(0.5f * glm::length(scene.box.size()) + 8.f * scene.lift) {}
 
-  // What is seen along parallel lines of sight from these points, at most RayScene::Geometry::kPacket.
-  void look(std::span<const glm::vec3> from, const Direction& sight, std::span<PathRandom> random,
+  // What is seen along lines of sight from these points, at most RayScene::Geometry::kPacket.
+  void look(std::span<const glm::vec3> from, std::span<const Direction> sights, std::span<PathRandom> random,
             std::span<Seen<N>> seen) const {
     constexpr std::size_t kPacket = RayScene::Geometry::kPacket;
     const std::size_t count = from.size();
@@ -53,31 +53,31 @@ class EyePaths {
     std::array<Hit, kPacket> hits;
     std::array<glm::vec3, kPacket> lit;  // where light from the sun would come in
     std::array<bool, kPacket> dark;
-    for (std::size_t i = 0; i < count; ++i) to_ground[i] = toGround(from[i], sight);
+    for (std::size_t i = 0; i < count; ++i) to_ground[i] = toGround(from[i], sights[i]);
     if (scene_.media.empty())
-      scene_.closest(from, sight, std::span(to_ground).first(count), std::span(hits).first(count));
+      scene_.closest(from, sights, std::span(to_ground).first(count), std::span(hits).first(count));
     else
-      lookIntoMedia(from, sight, random, to_ground, hits);
+      lookIntoMedia(from, sights, random, to_ground, hits);
     for (std::size_t i = 0; i < count; ++i) {
       seen[i] = {};
-      dark[i] = !meets(hits[i], from[i], sight, to_ground[i]) || !sendsSun(hits[i], lit[i]);
+      dark[i] = !meets(hits[i], from[i], sights[i], to_ground[i]) || !sendsSun(hits[i], lit[i]);
     }
     scene_.blocked(std::span(lit).first(count), to_sun_, std::span(dark).first(count));
     for (std::size_t i = 0; i < count; ++i) {
-      if (!meets(hits[i], from[i], sight, to_ground[i])) {
-        if (wide_) seen[i].light = light_.met<N>(sight, kInfinity);
+      if (!meets(hits[i], from[i], sights[i], to_ground[i])) {
+        if (wide_) seen[i].light = light_.met<N>(sights[i], kInfinity);
         continue;
       }
       const BandLanes<N> weight = BandLanes<N>::all(1.f);
-      if (!dark[i]) addSun(hits[i], sight, lit[i], weight, seen[i].once(hits[i].surface));
-      if (wide_) addDrawn(hits[i], sight, weight, random[i], seen[i].once(hits[i].surface));
-      if (followed_ == Followed::all || wide_) goOn(hits[i], sight, weight, random[i], seen[i]);
+      if (!dark[i]) addSun(hits[i], sights[i], lit[i], weight, seen[i].once(hits[i].surface));
+      if (wide_) addDrawn(hits[i], sights[i], weight, random[i], seen[i].once(hits[i].surface));
+      if (followed_ == Followed::all || wide_) goOn(hits[i], sights[i], weight, random[i], seen[i]);
     }
   }
 
   Seen<N> look(const glm::vec3& from, const Direction& sight, PathRandom& random) const {
     Seen<N> seen;
-    look(std::span(&from, 1), sight, std::span(&random, 1), std::span(&seen, 1));
+    look(std::span(&from, 1), std::span(&sight, 1), std::span(&random, 1), std::span(&seen, 1));
     return seen;
   }
 
@@ -90,22 +90,28 @@ class EyePaths {
     return from + std::min(0.f, (face - from.z) / sight.z) * sight;
   }
 
+  // The same of a line of sight from an eye, which sees nothing behind itself.
+  glm::vec3 startBefore(const glm::vec3& eye, const Direction& sight) const {
+    const glm::vec3 from = startOf(eye, sight);
+    return glm::dot(from - eye, sight) > 0.f ? from : eye;
+  }
+
  private:
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-  // What is met first along parallel lines of sight where there are media.
-  void lookIntoMedia(std::span<const glm::vec3> from, const Direction& sight, std::span<PathRandom> random,
+  // What is met first along lines of sight where there are media.
+  void lookIntoMedia(std::span<const glm::vec3> from, std::span<const Direction> sights, std::span<PathRandom> random,
                      std::span<const float> to_ground, std::span<Hit> hits) const {
     std::array<RayScene::Geometry::Flight, RayScene::Geometry::kPacket> flights;
     std::array<float, RayScene::Geometry::kPacket> reach;
     for (std::size_t i = 0; i < from.size(); ++i) {
-      flights[i] = scene_.fly(from[i], sight, random[i]);
+      flights[i] = scene_.fly(from[i], sights[i], random[i]);
       reach[i] = std::min(to_ground[i], flights[i].distance);
     }
-    scene_.closest(from, sight, std::span(reach).first(from.size()), hits.first(from.size()));
+    scene_.closest(from, sights, std::span(reach).first(from.size()), hits.first(from.size()));
     for (std::size_t i = 0; i < from.size(); ++i)
       if (hits[i].surface == Surface::none && flights[i].distance < to_ground[i])
-        hits[i] = scene_.collide(flights[i], from[i], sight, random[i]);
+        hits[i] = scene_.collide(flights[i], from[i], sights[i], random[i]);
   }
 
   // Distance to the ground along a ray, infinite if it meets none.

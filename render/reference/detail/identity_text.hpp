@@ -64,8 +64,9 @@ inline TraceIdentity identityOf(const std::vector<TraceLight>& bands, const RayS
 
 inline std::string textOf(const PixelRays& rays) {
   const auto text = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
-  return fmt::format("{} x {} along {}, corner {}, steps {}, {}", rays.width, rays.height, text(rays.sight),
-                     text(rays.corner), text(rays.right_step), text(rays.down_step));
+  return fmt::format("{} x {} {}, corner {}, steps {}, {}", rays.width, rays.height,
+                     rays.eye ? "from " + text(*rays.eye) : "along " + text(rays.sight), text(rays.corner),
+                     text(rays.right_step), text(rays.down_step));
 }
 
 }  // namespace sunfleck::detail

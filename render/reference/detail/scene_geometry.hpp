@@ -81,11 +81,11 @@ struct RayScene::Geometry {
   // Whether anything stands on that way.
   bool blocked(const glm::vec3& from, const glm::vec3& direction) const;
 
-  // The same for up to kPacket parallel rays at once, which is much faster where they lie side by side.
+  // The same for up to kPacket rays at once, which is much faster where they lie side by side.
   static constexpr std::size_t kPacket = 16;
-  void closest(std::span<const glm::vec3> from, const glm::vec3& direction, std::span<const float> reach,
+  void closest(std::span<const glm::vec3> from, std::span<const Direction> directions, std::span<const float> reach,
                std::span<detail::Hit> hits) const;
-  // `blocked` of rays that are so already is not asked for.
+  // Of parallel rays; of those that are blocked already it is not asked for.
   void blocked(std::span<const glm::vec3> from, const glm::vec3& direction, std::span<bool> blocked) const;
 
   // (R14) Where a path meets something in a medium, whatever surfaces may stand before.
