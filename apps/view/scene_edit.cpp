@@ -160,7 +160,7 @@ std::string nameOf(const SceneEdit& edit) {
 
 Document edited(Document document, const SceneEdit& edit) {
   std::visit(Apply{document}, edit);
-  requireModelled(document.scene);
+  requireDrawable(document.scene);
   return document;
 }
 

@@ -162,7 +162,7 @@ const std::vector<Form>& forms() {
   return kForms;
 }
 
-std::string quoted(std::string_view word) {
+std::string inQuotes(std::string_view word) {
   return fmt::format("\"{}{}\"", word.substr(0, kLongestQuote), word.size() > kLongestQuote ? "..." : "");
 }
 
@@ -184,7 +184,7 @@ std::vector<std::string> wordsOf(std::string_view line, const Place& place) {
       break;
     } else if (line[i] == '"') {
       const std::size_t end = line.find('"', i + 1);
-      if (end == std::string_view::npos) place.wrong(quoted(line.substr(i)) + ": must end with a quote");
+      if (end == std::string_view::npos) place.wrong(inQuotes(line.substr(i)) + ": must end with a quote");
       words.emplace_back(line.substr(i + 1, end - i - 1));
       i = end + 1;
     } else {
@@ -219,7 +219,7 @@ std::string ruleOf(const Parameter& p) {
 
 void take(ScriptStep& step, const Parameter& p, const std::string& word, const Place& place, const char* command) {
   const auto refuse = [&] {
-    place.wrong(fmt::format("{} {} = {}: must be {}", command, p.name, quoted(word), ruleOf(p)));
+    place.wrong(fmt::format("{} {} = {}: must be {}", command, p.name, inQuotes(word), ruleOf(p)));
   };
   if (p.kind == Parameter::Kind::text) {
     constexpr std::size_t kLongest = 4096;
@@ -256,9 +256,9 @@ ScriptStep stepOf(const std::vector<std::string>& words, const Place& place) {
     std::vector<std::string> further;
     for (const Form& other : forms())
       if (const auto own = split(other.words, ' '); own.size() > 1 && own[0] == words[0]) further.push_back(own[1]);
-    if (further.empty()) place.wrong(fmt::format("{}: must be a command; see: sunfleck view --help", quoted(words[0])));
+    if (further.empty()) place.wrong(fmt::format("{}: must be a command; see: sunfleck view --help", inQuotes(words[0])));
     place.wrong(fmt::format("{} {}: must be one of {}", words[0],
-                            words.size() > 1 ? quoted(words[1]) : "without a word", fmt::join(further, ", ")));
+                            words.size() > 1 ? inQuotes(words[1]) : "without a word", fmt::join(further, ", ")));
   }
   ScriptStep step{.line = place.line, .verb = form->verb, .numbers = {}, .texts = {}};
   std::size_t next = used;
@@ -270,7 +270,7 @@ ScriptStep stepOf(const std::vector<std::string>& words, const Place& place) {
     take(step, p, words[next++], place, form->words);
   }
   if (next < words.size())
-    place.wrong(fmt::format("{} {}: must be no word too many", form->words, quoted(words[next])));
+    place.wrong(fmt::format("{} {}: must be no word too many", form->words, inQuotes(words[next])));
   return step;
 }
 
