@@ -177,6 +177,15 @@ void Session::showWholeStand() {
   camera = showingAll(document().scene, camera);
 }
 
+void Session::goTo(const std::string& saved_camera) {
+  const auto found = std::ranges::find(document().cameras, saved_camera, &SavedCamera::name);
+  if (found == document().cameras.end()) throw InvalidInput("camera \"" + saved_camera + "\": must be a saved one");
+  const int width = camera.width, height = camera.height;
+  camera = found->camera;
+  camera.width = width;
+  camera.height = height;
+}
+
 void Session::release(const StandWorker::Result& shown) {
   shown_ = shown.made.revision;
   last_costs_ = shown.costs;

@@ -19,6 +19,8 @@ inline constexpr std::array kLayers{Layer::total, Layer::direct,    Layer::singl
                                     Layer::depth, Layer::thickness, Layer::compensation};
 std::string nameOf(Layer layer);
 
+const std::vector<std::string>& toneNames();
+
 enum class Comparison { off, wipe, flip, difference };
 
 struct Look {
@@ -65,6 +67,9 @@ class Session {
   // Trees of a kind at random places around one, none nearer to another tree than `spacing`. Where all places are taken
   // nothing is done.
   void paint(glm::vec2 place, float radius, float spacing, std::uint32_t kind, std::uint64_t gesture = 0);
+  // Where the sun stands on a date (2026-06-21) at a time (12:00, UTC) and a place [degrees]; +x is east, +y north.
+  void turnSunByDate(std::size_t sun, const std::string& date, const std::string& time, double latitude,
+                     double longitude);
   // Grows a species or reads a file in the background, and adds it as a kind.
   void addKind(const std::string& species_or_file, std::uint64_t seed);
   std::uint32_t selectedKind() const;  // of the selected tree, or the first
@@ -73,6 +78,7 @@ class Session {
   Camera camera;  // as looked through now; its size is that of the picture
   Look look;
   void showWholeStand();
+  void goTo(const std::string& saved_camera);
 
   // The geometry that waits to be drawn, if there is one. Release it when it has been.
   std::optional<StandWorker::Result> take() { return worker_.take(); }
