@@ -10,8 +10,14 @@ std::string nameOf(Model model) {
       return "spp";
     case Model::sppg:
       return "sppg";
+    case Model::nstreamg:
+      return "nstreamg";
   }
   return {};
+}
+
+bool needsCompensation(Model model) {
+  return model != Model::ss && model != Model::spp;
 }
 
 }  // namespace sunfleck

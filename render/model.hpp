@@ -5,9 +5,15 @@
 
 namespace sunfleck {
 
-// The scattering models. Shaders read the same numbers.
-enum class Model { ss = 0, spp = 1, sppg = 2 };
-inline constexpr std::array kModels{Model::ss, Model::spp, Model::sppg};
-std::string nameOf(Model model);  // "ss", "spp", "sppg"
+// The scattering models.
+enum class Model {
+  ss,        // single scattering: light that met no leaf before
+  spp,       // simplified plane-parallel slab
+  sppg,      // that, compensated for the crown's edge by G
+  nstreamg,  // a slab by two streams in each half, with G
+};
+inline constexpr std::array kModels{Model::ss, Model::spp, Model::sppg, Model::nstreamg};
+std::string nameOf(Model model);      // "ss", "spp", "sppg", "nstreamg"
+bool needsCompensation(Model model);  // whether it asks for G
 
 }  // namespace sunfleck

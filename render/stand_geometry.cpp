@@ -123,7 +123,7 @@ void requireModelled(const Scene& scene) {
 }
 
 GeometryNeeds needsOf(Model model) {
-  return {.compensation = model == Model::sppg};
+  return {.compensation = needsCompensation(model)};
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort)

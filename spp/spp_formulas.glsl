@@ -118,18 +118,42 @@ SHARED_FN SlabPowers compensated(SlabPowers powers, Number direct, Number compen
   return result;
 }
 
-// (S7) Radiance that leaves a leaf towards the eye, lit by direct light and by the two diffuse half-spheres  [1/sr].
-//   to_light_cosine   between the leaf's normal on the eye's side and the direction back to the light      [1], -1 .. 1
-//   visible_direct    direct light that reaches the leaf: 1 in full light                                  [1]
-//   slant_cosine      between that normal and the slab's upward normal                                     [1], -1 .. 1
+// Irradiance of a surface's two sides [F].
+struct SidesLight {
+  Number same;   // the side that the eye sees
+  Number other;
+};
+
+// (S7) Direct light on both sides.
+//   to_light_cosine   between the surface's normal on the eye's side and the direction back to the light  [1], -1 .. 1
+//   visible_direct    direct light that reaches the surface: 1 in full light                              [1]
+SHARED_FN SidesLight directOnSides(Number to_light_cosine, Number visible_direct) {
+  SidesLight light;
+  light.same = max(to_light_cosine, Number(0.0f)) * visible_direct;
+  light.other = max(-to_light_cosine, Number(0.0f)) * visible_direct;
+  return light;
+}
+
+// (S7) Light of the two diffuse half-spheres on both sides.
+//   slant_cosine      between the surface's normal on the eye's side and the slab's upward normal         [1], -1 .. 1
 //   diffuse           powers without the direct light
+SHARED_FN SidesLight halvesOnSides(Number slant_cosine, SlabPowers diffuse) {
+  Number mean = Number(0.25f) * (diffuse.down + diffuse.up);
+  Number slanted = Number(0.25f) * (diffuse.down - diffuse.up) * slant_cosine;
+  SidesLight light;
+  light.same = mean + slanted;
+  light.other = mean - slanted;
+  return light;
+}
+
+// (S7) Radiance that leaves a surface towards the eye  [1/sr].
+SHARED_FN Number lambertRadiance(SidesLight light, Number reflectance, Number transmittance) {
+  return Number(0.31830988618379067f) * (reflectance * light.same + transmittance * light.other);
+}
+
+// (S7) The same of a leaf in the direct light and the two diffuse half-spheres, as above.
 SHARED_FN Number leafRadiance(Number to_light_cosine, Number visible_direct, Number slant_cosine, SlabPowers diffuse,
                               Number reflectance, Number transmittance) {
-  Number same_side = max(to_light_cosine, Number(0.0f)) * visible_direct +
-                     Number(0.25f) * (diffuse.down * (Number(1.0f) + slant_cosine) +
-                                      diffuse.up * (Number(1.0f) - slant_cosine));
-  Number other_side = max(-to_light_cosine, Number(0.0f)) * visible_direct +
-                      Number(0.25f) * (diffuse.down * (Number(1.0f) - slant_cosine) +
-                                       diffuse.up * (Number(1.0f) + slant_cosine));
-  return Number(0.31830988618379067f) * (reflectance * same_side + transmittance * other_side);
+  return lambertRadiance(directOnSides(to_light_cosine, visible_direct), reflectance, transmittance) +
+         lambertRadiance(halvesOnSides(slant_cosine, diffuse), reflectance, transmittance);
 }

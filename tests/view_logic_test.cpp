@@ -85,6 +85,8 @@ TEST(EditHistory, GoesBackAndForthThroughAnyEdits) {
       }
       ASSERT_TRUE(same(history.now(), documents.back()));
     }
+    history.apply(randomEdit(history.now(), random));  // after which there is nothing to do again
+    documents.push_back(history.now());
     for (std::size_t i = documents.size(); i-- > 1;) {
       ASSERT_TRUE(same(history.now(), documents[i]));
       ASSERT_TRUE(history.undo());

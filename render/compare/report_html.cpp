@@ -28,6 +28,8 @@ std::string colourOf(Model model) {  // Okabe & Ito's palette, safe for the colo
       return "#D55E00";
     case Model::sppg:
       return "#009E73";
+    case Model::nstreamg:
+      return "#CC79A7";
   }
   return "#000000";
 }

@@ -8,15 +8,10 @@ layout(std140, binding = 0) uniform Frame {
   vec4 map_size;          // x, y: size [pixel]; z: side of a pixel [m]; w: 1 / z
   vec4 cell_low;          // xyz: corner of the tree's cells; w: side of a cell            [m]
   vec4 cell_count;        // xyz: cells of one tree; w: trees side by side in the texture
-  vec4 leaf_reflectance;  // per band [1]
-  vec4 leaf_transmittance;
-  vec4 wood_reflectance;
-  vec4 ground_albedo;
+  vec4 ground_albedo;     // per band [1]
   vec4 ground;       // xyz: centre of the ground's disc; w: its radius                    [m]
-  uvec4 choice;      // x: shading model; y: instance number of the ground
+  uvec4 choice;      // x: whether there is G; y: instance number of the ground
 };
-
-const uint kSingleScattering = 0u, kSpp = 1u, kSppg = 2u;  // choice.x
 
 struct Instance {
   vec4 position;    // xyz: of the tree; 0 for the ground                                  [m]

@@ -4,6 +4,7 @@
 #include "spp/spp_formulas.glsl"
 #include "render/gl/frame.glsl"
 #include "render/gl/foliage.glsl"
+#include "render/gl/compensation.glsl"
 #include "render/gl/shading.glsl"
 
 in vec3 place;
@@ -35,8 +36,8 @@ void main() {
   if (from_centre >= 1.0) discard;
   float coverage = 1.0 - smoothstep(0.6, 1.0, from_centre);
   Foliage foliage = foliageAt(place, choice.y, kNoLeaf, map_size.z);
-  float compensation = choice.x == kSppg ? compensationAbove(place) : 1.0;
-  vec3 light = surfaceRadiance(-sun.z, foliage, foliage.before + foliage.beyond, compensation, ground_albedo.rgb,
-                               vec3(0.0));
-  radiance = vec4(light * coverage, coverage);
+  float compensation = choice.x != 0u ? compensationAbove(place) : 1.0;
+  Surface surface = opaqueSurface(0u, 0u, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), to_eye.xyz);
+  Shaded shaded = shadeByLight(surface, foliage, foliage.before + foliage.beyond, compensation, 0u);
+  radiance = vec4((shaded.direct + shaded.single + shaded.multiple) * coverage, coverage);
 }

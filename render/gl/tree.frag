@@ -4,6 +4,7 @@
 #include "spp/spp_formulas.glsl"
 #include "render/gl/frame.glsl"
 #include "render/gl/foliage.glsl"
+#include "render/gl/compensation.glsl"
 #include "render/gl/shading.glsl"
 
 in vec3 place;
@@ -19,9 +20,10 @@ void main() {
   Foliage foliage = foliageAt(place, instance, own_leaf, woodBias(wood ? to_light_cosine : 1.0));
   // A leaf is itself a part of the slab's thickness.
   float thickness = foliage.before + foliage.beyond + (wood ? 0.0 : 1.0);
-  float compensation = choice.x == kSppg ? compensationAt(place, instances[instance].neighbours.z) : 1.0;
-  vec3 reflectance = wood ? wood_reflectance.rgb : leaf_reflectance.rgb;
-  vec3 transmittance = wood ? vec3(0.0) : leaf_transmittance.rgb;
-  radiance = vec4(
-      surfaceRadiance(to_light_cosine, foliage, thickness, compensation, reflectance, transmittance), 1.0);
+  uint tree = instances[instance].neighbours.z;
+  float compensation = choice.x != 0u ? compensationAt(place, tree) : 1.0;
+  Surface surface =
+      wood ? woodSurface(0u, tree, normal, to_eye.xyz) : leafSurface(0u, tree, own_leaf, normal, to_eye.xyz);
+  Shaded shaded = shadeByLight(surface, foliage, thickness, compensation, 0u);
+  radiance = vec4(shaded.direct + shaded.single + shaded.multiple, 1.0);
 }

@@ -34,7 +34,7 @@ void requireDrawable(const Scene& scene, const Camera& camera) {
 void requireFitting(const Scene& scene, const ShadingData& data, Model model) {
   if (!data.sun || glm::length(data.sun->along() - scene.sun().light()) > kSameDirection)
     throw std::invalid_argument("treePicture: the opacity map is not along the scene's sun");
-  if (model != Model::sppg) return;
+  if (!needsCompensation(model)) return;
   bool fits = data.cells && data.compensation.size() == scene.stand.trees.size();
   for (const std::span<const float>& values : data.compensation) fits = fits && values.size() == data.cells->count();
   if (!fits) throw std::invalid_argument("treePicture: G is not given for every cell of every tree");
@@ -65,7 +65,7 @@ Image treePicture(const Scene& scene, const ShadingData& data, Model model, cons
                    .crossings = data.sun->crossings(),
                    .wood_depth = data.sun->woodDepth()};
   CompensationCells cells;
-  if (model == Model::sppg)
+  if (needsCompensation(model))
     cells = {.low = data.cells->low,
              .cell_size = data.cells->cell_size,
              .size = data.cells->size,

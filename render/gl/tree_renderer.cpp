@@ -14,6 +14,7 @@
 #include "render/gl/detail/frame_data.hpp"
 #include "render/gl/framebuffer.hpp"
 #include "render/gl/program.hpp"
+#include "render/gl/shading_buffers.hpp"
 #include "render/gl/stand_instances.hpp"
 #include "render/gl/volume_texture.hpp"
 
@@ -132,9 +133,26 @@ CellBlocks cellBlocks(const CompensationCells& cells) {
   return blocks;
 }
 
+StandLight lightOf(const Sun& sun) {
+  return {.along = sun.light(), .irradiance = sun.irradiance};
+}
+
+// What is a model's own.
+struct ModelShading {
+  ModelShading(Model model, const Scene& scene)
+      : buffers(sunfleck::shading::shadingData(model, scene.kinds, std::array{lightOf(scene.sun())})),
+        tree_program({shaderOf(Stage::vertex, "render/gl/tree.vert"),
+                      shadingShader(Stage::fragment, "render/gl/tree.frag", model)}),
+        ground_program({shaderOf(Stage::vertex, "render/gl/ground.vert"),
+                        shadingShader(Stage::fragment, "render/gl/ground.frag", model)}) {}
+  ShadingBuffers buffers;
+  Program tree_program, ground_program;
+};
+
 }  // namespace
 
 struct TreeRenderer::Resources {
+  Scene scene;
   const Context* context;
   GroundDisc ground;
   bool has_ground;
@@ -146,11 +164,12 @@ struct TreeRenderer::Resources {
   VertexArray tree_array, no_array;
   CellBlocks blocks;
   VolumeTexture compensation;
-  Program depth_program, tree_program, ground_program;
+  Program depth_program;
 
-  Resources(const Context& current, const Scene& scene, const SunMap& sun, const CompensationCells& cells,
+  Resources(const Context& current, const Scene& drawn_scene, const SunMap& sun, const CompensationCells& cells,
             const std::vector<VertexData>& corners)
-      : context(&current),
+      : scene(drawn_scene),
+        context(&current),
         ground(groundOf(scene)),
         has_ground(anyAbove(scene.ground_albedo, 0.f)),
         stand(standInstances(scene.stand, periodsAround(scene.stand, leafBounds(*scene.kinds[0].mesh)), sun, ground)),
@@ -166,11 +185,7 @@ struct TreeRenderer::Resources {
         blocks(cellBlocks(cells)),
         compensation(blocks.size, blocks.values),
         depth_program(
-            {shaderOf(Stage::vertex, "render/gl/tree.vert"), shaderOf(Stage::fragment, "render/gl/depth.frag")}),
-        tree_program(
-            {shaderOf(Stage::vertex, "render/gl/tree.vert"), shaderOf(Stage::fragment, "render/gl/tree.frag")}),
-        ground_program(
-            {shaderOf(Stage::vertex, "render/gl/ground.vert"), shaderOf(Stage::fragment, "render/gl/ground.frag")}) {
+            {shaderOf(Stage::vertex, "render/gl/tree.vert"), shaderOf(Stage::fragment, "render/gl/depth.frag")}) {
     const Bounds prototype = bounds(*scene.kinds[0].mesh);
     for (const Instance& instance : stand.drawn) {
       box.include(prototype.low + instance.position);
@@ -182,18 +197,13 @@ struct TreeRenderer::Resources {
     frame.map_size = glm::vec4(glm::vec2(sun.size), sun.pixel_size, 1.f / sun.pixel_size);
     frame.cell_low = glm::vec4(cells.low, cells.cell_size);
     frame.cell_count = glm::vec4(glm::max(glm::vec3(cells.size), glm::vec3(1.f)), static_cast<float>(blocks.across));
-    for (int band = 0; band < kBands; ++band) {
-      frame.leaf_reflectance[band] = scene.kinds[0].leaf[static_cast<std::size_t>(band)].reflectance;
-      frame.leaf_transmittance[band] = scene.kinds[0].leaf[static_cast<std::size_t>(band)].transmittance;
-    }
-    frame.wood_reflectance = glm::vec4(scene.kinds[0].wood_reflectance, 0.f);
     frame.ground_albedo = glm::vec4(scene.ground_albedo, 0.f);
     frame.ground = glm::vec4(ground.centre, ground.radius);
     frame.choice.y = static_cast<std::uint32_t>(stand.drawn.size());
     context->requireNoError("loading the tree");
   }
 
-  void draw(const FrameData& data, const Framebuffer& target, bool with_ground) const {
+  void draw(const FrameData& data, const ModelShading& shading, const Framebuffer& target, bool with_ground) const {
     target.begin();
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
@@ -203,6 +213,7 @@ struct TreeRenderer::Resources {
     unsigned binding = 0;
     for (const Buffer* storage : {&instances, &neighbours, &first, &crossings, &wood_depth})
       storage->bindStorage(binding++);
+    shading.buffers.bind();
     compensation.bind(0);
     tree_array.bind();
     const auto draw_trees = [&] {
@@ -213,12 +224,12 @@ struct TreeRenderer::Resources {
     depth_program.use();
     draw_trees();
     glDepthFunc(GL_EQUAL);
-    tree_program.use();
+    shading.tree_program.use();
     draw_trees();
     glDepthFunc(GL_LESS);
     if (!with_ground) return;
     no_array.bind();
-    ground_program.use();
+    shading.ground_program.use();
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   }
 };
@@ -272,7 +283,8 @@ Image TreeRenderer::picture(const Camera& camera, Model model, const Progress& p
   const Axes axes = viewAxes(camera);
   FrameData frame = r.frame;
   frame.to_eye = glm::vec4(-axes.along, 0.f);
-  frame.choice.x = static_cast<std::uint32_t>(model);
+  frame.choice.x = needsCompensation(model) ? 1u : 0u;
+  const ModelShading shading(model, r.scene);
   // Everything lies within this distance of the camera's target.
   float reach = glm::length(r.box.centre() - camera.target) + 0.5f * glm::length(r.box.size());
   reach = std::max(reach, glm::length(r.ground.centre - camera.target) + 1.5f * r.ground.radius);
@@ -289,7 +301,7 @@ Image TreeRenderer::picture(const Camera& camera, Model model, const Progress& p
       const float rows_done = static_cast<float>(y) + static_cast<float>(tile.y * x) / static_cast<float>(camera.width);
       if (!goOn(progress, double{rows_done} / camera.height)) throw std::runtime_error("interrupted");
       frame.clip_from_world = clipFromWorld(camera, {x, y}, tile, reach);
-      r.draw(frame, target, with_ground);
+      r.draw(frame, shading, target, with_ground);
       target.read(samples);
       r.context->requireNoError("drawing the picture");
       addTile(image, samples, tile.x, {x, y});

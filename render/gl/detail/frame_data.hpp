@@ -14,11 +14,11 @@ struct FrameData {
   glm::vec4 sun{0.f};
   glm::vec4 map_right{0.f}, map_up{0.f}, map_size{0.f};
   glm::vec4 cell_low{0.f}, cell_count{1.f};
-  glm::vec4 leaf_reflectance{0.f}, leaf_transmittance{0.f}, wood_reflectance{0.f}, ground_albedo{0.f};
+  glm::vec4 ground_albedo{0.f};
   glm::vec4 ground{0.f};
   glm::uvec4 choice{0u};
 };
-static_assert(sizeof(FrameData) == 64 + 12 * 16 + 16);
+static_assert(sizeof(FrameData) == 64 + 9 * 16 + 16);
 
 struct InstanceData {
   glm::vec4 position{0.f};

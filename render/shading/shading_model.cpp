@@ -1,0 +1,71 @@
+#include "render/shading/shading_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "core/leaf_optics.hpp"
+#include "scattering/leaf_scattering.hpp"
+#include "spp/mode_numbers.hpp"
+#include "spp/slab.hpp"
+#include "spp/stream_constants.hpp"
+
+namespace sunfleck::shading {
+namespace {
+
+// Calls append(optics, numbers) for each kind and band.
+template <typename Append>
+std::vector<float> ofLeaves(std::span<const TreeKind> kinds, const Append& append) {
+  std::vector<float> numbers;
+  for (const TreeKind& kind : kinds)
+    for (const LeafOptics& leaf : kind.leaf) append(leaf, numbers);
+  return numbers;
+}
+
+std::vector<float> none(std::span<const TreeKind>) {
+  return {};
+}
+
+std::vector<float> sppNumbers(std::span<const TreeKind> kinds) {
+  return ofLeaves(kinds, [](const LeafOptics& leaf, std::vector<float>& numbers) {
+    numbers.push_back(leaf.albedo());
+    numbers.push_back(spp::sphericalLeafForwardShare(leaf.reflectance, leaf.transmittance));
+  });
+}
+
+constexpr int kStreams = 2;  // STREAMS of the text
+
+// Leaves of all directions alike, lit along the slab's normal.
+std::vector<float> streamNumbers(std::span<const TreeKind> kinds) {
+  return ofLeaves(kinds, [](const LeafOptics& leaf, std::vector<float>& numbers) {
+    const spp::BeamInMedium beam(LeafScattering{.angles = LeafAngles::spherical(),
+                                                .reflectance = double{leaf.reflectance},
+                                                .transmittance = double{leaf.transmittance}},
+                                 1.);
+    const spp::StreamConstants constants = spp::nStreamConstants(beam, kStreams, 1);
+    numbers.push_back(static_cast<float>(constants.depth_scale / constants.beam_projection));
+    numbers.push_back(static_cast<float>(constants.beam_rate));
+    const std::vector<float> modes = spp::modeNumbers<float>(constants);
+    numbers.insert(numbers.end(), modes.begin(), modes.end());
+    const spp::PowerWeights weights = spp::powerWeights(constants);
+    for (const auto* of_modes : {&weights.power_sum, &weights.power_difference})
+      for (const double weight : *of_modes) numbers.push_back(static_cast<float>(weight));
+  });
+}
+
+constexpr std::array kShadingModels{
+    ShadingModel{Model::ss, "render/shading/ss.glsl", none},
+    ShadingModel{Model::spp, "render/shading/spp.glsl", sppNumbers},
+    ShadingModel{Model::sppg, "render/shading/sppg.glsl", sppNumbers},
+    ShadingModel{Model::nstreamg, "render/shading/nstreamg.glsl", streamNumbers},
+};
+
+}  // namespace
+
+const ShadingModel& shadingModel(Model model) {
+  const auto found = std::ranges::find(kShadingModels, model, &ShadingModel::model);
+  assert(found != kShadingModels.end());
+  return *found;
+}
+
+}  // namespace sunfleck::shading

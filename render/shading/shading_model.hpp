@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "render/model.hpp"
+#include "render/scene.hpp"
+
+namespace sunfleck::shading {
+
+// (R27) A model as surfaces are shaded by it. One more is one more text and one more entry.
+struct ShadingModel {
+  Model model;
+  std::string_view text;  // file that defines scatteredLight()
+  // What the text reads as model_constants, for all kinds: one number after the other, as its struct holds them.
+  std::vector<float> (*constants)(std::span<const TreeKind> kinds);
+};
+
+const ShadingModel& shadingModel(Model model);
+
+}  // namespace sunfleck::shading

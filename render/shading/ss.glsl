@@ -1,0 +1,4 @@
+// Single scattering: no light but the direct.
+Scattered scatteredLight(Surface surface, Foliage foliage, float thickness, float compensation, uint light) {
+  return notTold(vec3(0.0f));
+}

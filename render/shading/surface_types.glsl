@@ -1,0 +1,35 @@
+// What shading reads and gives. Like all of this folder's text, it is C++ (with GLM's vectors) and GLSL.
+
+const uint kMostSurfaceKinds = 64u;       // of trees in a scene
+const uint kMostShadingLights = 4u;
+
+// What a kind of tree does to light, per band [1].
+struct KindOptics {
+  vec4 leaf_reflectance;
+  vec4 leaf_transmittance;
+  vec4 wood_reflectance;
+};
+
+// A sun.
+struct ShadingLight {
+  vec4 travel;      // xyz: unit vector along which its light travels
+  vec4 irradiance;  // xyz: of a plane that faces it, per band
+};
+
+// What the eye sees of a leaf, of wood or of the ground: two sides that scatter by Lambert's law.
+struct Surface {
+  vec3 normal;         // on the eye's side
+  vec3 to_eye;         // unit vector
+  vec3 reflectance;    // per band [1]
+  vec3 transmittance;
+  uint kind;           // whose leaves make the slab around it
+  uint tree;           // of the stand; for models that know each leaf
+  uint leaf;           // of the tree; 0xffffffff for wood and ground
+};
+
+// Radiance towards the eye, per band [1/sr, times irradiance].
+struct Shaded {
+  vec3 direct;    // of light that was scattered here alone
+  vec3 single;    // of light that was scattered once before; 0 where the model does not tell
+  vec3 multiple;  // all other
+};
