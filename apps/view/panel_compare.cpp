@@ -110,6 +110,8 @@ void Panels::drawProbe(Session&, const FrameReport& report) {
   row("further", radiance(probe.multiple));
   tip("All other light");
   const auto number = [](const std::optional<float>& value) { return value ? fmt::format("{:.3f}", *value) : "-"; };
+  row("sky", radiance(probe.sky));
+  tip("Light of the sky, scattered or seen behind all");
   row("depth", number(probe.depth));
   tip("Leaves between here and the light, along the light");
   row("thickness", number(probe.thickness));
@@ -129,7 +131,8 @@ void Panels::drawTimes(Session& session, const FrameReport& report) {
   tip("Time of the last frames [ms], from 0 to the slowest");
   if (beginRows("passes")) {
     for (const auto& [name, ms] : report.passes_ms) row(name.c_str(), fmt::format("{:.2f} ms", ms));
-    row("to the graphics card", fmt::format("{:.1f} ms, {:.2f} MB", report.sent_ms, 1e-6 * static_cast<double>(report.sent_bytes)));
+    row("to the graphics card",
+        fmt::format("{:.1f} ms, {:.2f} MB", report.sent_ms, 1e-6 * static_cast<double>(report.sent_bytes)));
     ImGui::EndTable();
   }
   ImGui::TextDisabled("%s", report.renderer.c_str());

@@ -17,10 +17,12 @@ void Panels::drawFiles(Session& session, Requests& requests) {
     return pressed;
   };
   heading("Save");
-  if (writes("png", screenshot, "picture", "The picture as shown, without panels: .png")) requests.screenshot = screenshot;
-  if (writes("exr", exr, "radiances", "Radiances in layers, with depth, G and what is seen: .exr")) requests.exr = exr;
-  if (writes("toml", scene, "scene", "The scene with its camera, as every command reads it: .toml"))
-    requests.scene = scene;
+  if (writes("png", picture_file, "picture", "The picture as shown, without panels: .png"))
+    requests.screenshot = picture_file;
+  if (writes("exr", exr_file, "radiances", "Radiances in layers, with depth, G and what is seen: .exr"))
+    requests.exr = exr_file;
+  if (writes("toml", scene_file, "scene", "The scene with its camera, as every command reads it: .toml"))
+    requests.scene = scene_file;
   heading("Cameras");
   ImGui::InputText("##name", &camera_name);
   ImGui::SameLine();

@@ -25,7 +25,8 @@ bool skyDisc(const std::vector<Sun>& suns, std::size_t edited, float& zenith, fl
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddCircleFilled(centre, radius + below, IM_COL32(28, 32, 34, 255), 64);
   list.AddCircleFilled(centre, radius, IM_COL32(58, 88, 122, 255), 64);
-  for (const float ring : {1.f / 3.f, 2.f / 3.f}) list.AddCircle(centre, ring * radius, IM_COL32(110, 140, 170, 120), 64);
+  for (const float ring : {1.f / 3.f, 2.f / 3.f})
+    list.AddCircle(centre, ring * radius, IM_COL32(110, 140, 170, 120), 64);
   list.AddLine({centre.x - radius, centre.y}, {centre.x + radius, centre.y}, IM_COL32(110, 140, 170, 120));
   list.AddLine({centre.x, centre.y - radius}, {centre.x, centre.y + radius}, IM_COL32(110, 140, 170, 120));
   list.AddText({centre.x + radius - 0.9f * ImGui::GetFontSize(), centre.y}, IM_COL32(200, 215, 230, 200), "x");
@@ -130,8 +131,10 @@ void Panels::drawSky(Session& session) {
   using Kind = SceneSky::Kind;
   heading("Sky");
   SceneSky sky = session.document().scene.sky;
-  static constexpr std::array<std::pair<Kind, const char*>, 4> kKinds{
-      {{Kind::none, "none"}, {Kind::uniform, "uniform"}, {Kind::overcast, "overcast"}, {Kind::preetham, "Preetham, clear"}}};
+  static constexpr std::array<std::pair<Kind, const char*>, 4> kKinds{{{Kind::none, "none"},
+                                                                       {Kind::uniform, "uniform"},
+                                                                       {Kind::overcast, "overcast"},
+                                                                       {Kind::preetham, "Preetham, clear"}}};
   const char* name = "image";
   for (const auto& [kind_of_sky, text] : kKinds)
     if (sky.kind == kind_of_sky) name = text;

@@ -25,6 +25,11 @@ bool leftTab(Tab tab) {
 
 }  // namespace
 
+glm::vec3 differenceColour(float difference) {
+  const float size = std::min(std::abs(difference), 1.f), faint = std::sqrt(size);
+  return difference < 0.f ? glm::vec3(0.1f * size, 0.35f * size, faint) : glm::vec3(faint, 0.3f * size, 0.1f * size);
+}
+
 const char* nameOf(Tab tab) {
   static constexpr std::array kNames{"Scene", "Light", "Leaf", "Model", "Compare", "Probe", "Times", "Files"};
   return kNames[static_cast<std::size_t>(tab)];
@@ -125,8 +130,8 @@ void Panels::drawStatus(glm::ivec2 window, float height, Session& session, const
       ImGui::AlignTextToFramePadding();
       ImGui::TextUnformatted(work.what.c_str());
       ImGui::SameLine();
-      const std::string share = work.done > 0. ? fmt::format("{:.0f} %", 100. * work.done)
-                                               : fmt::format("{:.1f} s", work.seconds);
+      const std::string share =
+          work.done > 0. ? fmt::format("{:.0f} %", 100. * work.done) : fmt::format("{:.1f} s", work.seconds);
       ImGui::ProgressBar(static_cast<float>(work.done), {10.f * ImGui::GetFontSize(), 0.f}, share.c_str());
       ImGui::SameLine();
       if (session.loaded() && ImGui::SmallButton("cancel")) session.cancel();
@@ -137,11 +142,11 @@ void Panels::drawStatus(glm::ivec2 window, float height, Session& session, const
     else
       ImGui::TextUnformatted(session.message().c_str());
     if (session.loaded() && !report.frame_ms.empty()) {
-      const std::string right =
+      const std::string told =
           fmt::format("{}   {} of {} samples   {:.0f} ms a frame", nameOf(session.document().model), report.samples,
                       session.look.samples, report.frame_ms.back());
-      ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(right.c_str()).x - ImGui::GetFontSize());
-      ImGui::TextDisabled("%s", right.c_str());
+      ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(told.c_str()).x - ImGui::GetFontSize());
+      ImGui::TextDisabled("%s", told.c_str());
     }
   }
   ImGui::End();

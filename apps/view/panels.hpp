@@ -24,26 +24,26 @@ const char* nameOf(Tab tab);
 // What is seen at one pixel.
 struct Probe {
   glm::ivec2 pixel{0};
-  std::string what = "sky";            // kind and leaf, wood, ground
+  std::string what = "sky";  // kind and leaf, wood, ground
   std::optional<std::size_t> tree;
-  glm::vec3 radiance{0.f}, direct{0.f}, single{0.f}, multiple{0.f};  // [1/sr]
-  std::optional<float> depth, thickness, compensation;               // where there is a leaf [1]
+  glm::vec3 radiance{0.f}, direct{0.f}, single{0.f}, multiple{0.f}, sky{0.f};  // [1/sr]
+  std::optional<float> depth, thickness, compensation;                         // where there is a leaf [1]
 };
 
 // What the viewer measured, for the panels to tell.
 struct FrameReport {
-  std::vector<float> frame_ms;                              // of the last frames
-  std::vector<std::pair<std::string, double>> passes_ms;    // of the last drawing
-  double sent_ms = 0.;                                      // of the last sending to the graphics card
+  std::vector<float> frame_ms;                            // of the last frames
+  std::vector<std::pair<std::string, double>> passes_ms;  // of the last drawing
+  double sent_ms = 0.;                                    // of the last sending to the graphics card
   std::size_t sent_bytes = 0;
-  int samples = 0;                                          // in the picture shown
-  std::string renderer;                                     // what OpenGL draws with
+  int samples = 0;       // in the picture shown
+  std::string renderer;  // what OpenGL draws with
   std::optional<Probe> probe;
   // Of B against A, both whole; none where there is nothing to compare.
   std::optional<double> relative_rms;
   float difference_scale = 0.f;  // that the colours tell [1/sr]
   // Monte Carlo, where it is B.
-  bool reference_runs = false;
+  bool reference_runs = false, reference_finished = false;
   double reference_noise = 0., reference_seconds = 0., reference_done = 0.;
   std::string reference_failure;
 };
@@ -59,7 +59,7 @@ struct Panels {
   Tab left = Tab::scene, right = Tab::compare;
   bool choose_left = true, choose_right = true;  // the tab that is named is to be brought to the front
   Tool tool = Tool::select;
-  std::uint32_t kind = 0;  // to add and to paint
+  std::uint32_t kind = 0;                         // to add and to paint
   float paint_radius = 5.f, paint_spacing = 3.f;  // [m]
   std::size_t sun = 0;                            // that is edited
   std::uint64_t gesture = 0;
@@ -67,7 +67,7 @@ struct Panels {
   std::string new_kind = "maple", date = "2026-06-21", time = "12:00", camera_name = "view";
   int new_seed = 1;
   float latitude = 48.f, longitude = 9.f;
-  std::string screenshot = "view.png", exr = "view.exr", scene = "view.toml";
+  std::string picture_file = "view.png", exr_file = "view.exr", scene_file = "view.toml";
 
   void show(Tab tab);
   // Draws all for a window of this size; gives the part of it that is left for the picture: corner and size [pixel].

@@ -37,6 +37,8 @@ std::string nameOf(Layer layer) {
       return "single";
     case Layer::multiple:
       return "multiple";
+    case Layer::sky:
+      return "sky";
     case Layer::depth:
       return "depth";
     case Layer::thickness:
@@ -47,7 +49,20 @@ std::string nameOf(Layer layer) {
   return {};
 }
 
-Session::Session(std::string name, std::function<Document()> read) : read_(std::make_shared<std::optional<Document>>()) {
+const std::vector<std::string>& toneNames() {
+  static const std::vector<std::string> kNames{"linear"};
+  return kNames;
+}
+
+int toneNumber(const std::string& name) {
+  const auto found = std::ranges::find(toneNames(), name);
+  if (found == toneNames().end())
+    throw InvalidInput(fmt::format("tone = \"{}\": must be one of {}", name, fmt::join(toneNames(), ", ")));
+  return static_cast<int>(found - toneNames().begin());
+}
+
+Session::Session(std::string name, std::function<Document()> read)
+    : read_(std::make_shared<std::optional<Document>>()) {
   worker_.run("reading " + name, [read = std::move(read), into = read_] { *into = read(); });
 }
 
@@ -74,10 +89,7 @@ void Session::advance() {
   }
   if (wished_ != history_->revision() + 1) {
     wished_ = history_->revision() + 1;
-    worker_.wish({.scene = document().scene,
-                  .needs = {},
-                  .effort = document().effort,
-                  .revision = wished_});
+    worker_.wish({.scene = document().scene, .needs = {}, .effort = document().effort, .revision = wished_});
   }
 }
 
@@ -157,9 +169,14 @@ void Session::paint(glm::vec2 place, float radius, float spacing, std::uint32_t 
   if (!painted.empty()) edit(AddTrees{painted}, gesture);
 }
 
+void Session::turnSunByDate(std::size_t, const std::string&, const std::string&, double, double) {
+  throw InvalidInput("not yet");
+}
+
 void Session::addKind(const std::string& species_or_file, std::uint64_t seed) {
   grown_ = std::make_shared<std::optional<TreeKind>>();
-  worker_.run("growing " + species_or_file, [species_or_file, seed, into = grown_] { *into = readKind(species_or_file, seed); });
+  worker_.run("growing " + species_or_file,
+              [species_or_file, seed, into = grown_] { *into = readKind(species_or_file, seed); });
 }
 
 std::uint32_t Session::selectedKind() const {

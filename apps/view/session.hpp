@@ -14,26 +14,28 @@
 namespace sunfleck::view {
 
 // What the picture shows; not undone.
-enum class Layer { total, direct, single, multiple, depth, thickness, compensation };
-inline constexpr std::array kLayers{Layer::total, Layer::direct,    Layer::single,      Layer::multiple,
-                                    Layer::depth, Layer::thickness, Layer::compensation};
+enum class Layer { total, direct, single, multiple, sky, depth, thickness, compensation };
+inline constexpr std::array kLayers{Layer::total, Layer::direct, Layer::single,    Layer::multiple,
+                                    Layer::sky,   Layer::depth,  Layer::thickness, Layer::compensation};
 std::string nameOf(Layer layer);
 
 const std::vector<std::string>& toneNames();
+int toneNumber(const std::string& name);  // throws InvalidInput on another
 
 enum class Comparison { off, wipe, flip, difference };
 
 struct Look {
   Navigation navigation = Navigation::orbit;
   Layer layer = Layer::total;
-  float exposure = 3.f;             // radiance to brightness, > 0
-  std::string tone = "linear";      // its curve
-  int samples = 16;                 // per pixel, once nothing moves
-  bool fewer_leaves = true;         // where they are small (level of detail)
+  float exposure = 3.f;         // radiance to brightness, > 0
+  std::string tone = "linear";  // its curve
+  int samples = 16;             // per pixel, once nothing moves
+  bool fewer_leaves = true;     // where they are small (level of detail)
   Comparison comparison = Comparison::off;
-  std::optional<Model> other;       // what B is; none: the reference
-  float wipe = 0.5f;                // share of the width that shows A
-  float difference_scale = 0.f;     // largest difference that colours tell; 0: that of the picture
+  std::optional<Model> other;     // what B is; none: the reference
+  float wipe = 0.5f;              // share of the width that shows A
+  double reference_noise = 0.01;  // at which Monte Carlo ends: standard error of the pixels by the mean
+  float difference_scale = 0.f;   // largest difference that colours tell; 0: that of the picture
 };
 
 // What a person works on: the document with its history, the camera, how it is looked at, and the work in the
@@ -99,9 +101,9 @@ class Session {
 
  private:
   std::optional<EditHistory> history_;
-  std::shared_ptr<std::optional<Document>> read_;                     // by the worker
-  std::shared_ptr<std::optional<TreeKind>> grown_;                    // by the worker
-  std::uint64_t wished_ = 0, shown_ = 0;                              // revisions, one more than the history's
+  std::shared_ptr<std::optional<Document>> read_;   // by the worker
+  std::shared_ptr<std::optional<TreeKind>> grown_;  // by the worker
+  std::uint64_t wished_ = 0, shown_ = 0;            // revisions, one more than the history's
   std::uint64_t gesture_ = 0, strokes_ = 0;
   std::vector<ProductCost> last_costs_, recomputed_;
   double last_seconds_ = 0.;

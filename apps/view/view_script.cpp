@@ -256,7 +256,8 @@ ScriptStep stepOf(const std::vector<std::string>& words, const Place& place) {
     std::vector<std::string> further;
     for (const Form& other : forms())
       if (const auto own = split(other.words, ' '); own.size() > 1 && own[0] == words[0]) further.push_back(own[1]);
-    if (further.empty()) place.wrong(fmt::format("{}: must be a command; see: sunfleck view --help", inQuotes(words[0])));
+    if (further.empty())
+      place.wrong(fmt::format("{}: must be a command; see: sunfleck view --help", inQuotes(words[0])));
     place.wrong(fmt::format("{} {}: must be one of {}", words[0],
                             words.size() > 1 ? inQuotes(words[1]) : "without a word", fmt::join(further, ", ")));
   }

@@ -12,8 +12,7 @@ std::unique_ptr<Window> openWindow(const std::string& title, glm::ivec2 size) {
   void* const library = dlopen(SUNFLECK_GLFW_WINDOW, RTLD_NOW | RTLD_LOCAL);
   void* const open = library ? dlsym(library, "sunfleckOpenWindow") : nullptr;
   if (!open) throw std::runtime_error(std::string("a window needs GLFW 3.3: ") + dlerror());
-  return std::unique_ptr<Window>(
-      reinterpret_cast<Window* (*)(const std::string&, glm::ivec2)>(open)(title, size));
+  return std::unique_ptr<Window>(reinterpret_cast<Window* (*)(const std::string&, glm::ivec2)>(open)(title, size));
 }
 
 namespace {

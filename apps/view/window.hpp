@@ -27,14 +27,14 @@ enum Key : int {
 
 // What mouse and keys did since the last call.
 struct Input {
-  glm::ivec2 size{0};         // of what is drawn on [pixel]; 0 while minimised
-  glm::vec2 mouse{-1.f};      // from the upper left corner [pixel]
-  bool buttons[3] = {};       // left, right, middle: held now
-  float wheel = 0.f;          // steps, upwards
-  std::vector<bool> held;     // of each key
-  std::vector<int> pressed;   // keys, also by repetition
+  glm::ivec2 size{0};        // of what is drawn on [pixel]; 0 while minimised
+  glm::vec2 mouse{-1.f};     // from the upper left corner [pixel]
+  bool buttons[3] = {};      // left, right, middle: held now
+  float wheel = 0.f;         // steps, upwards
+  std::vector<bool> held;    // of each key
+  std::vector<int> pressed;  // keys, also by repetition
   std::vector<char32_t> typed;
-  bool close = false;         // the person wants it to end
+  bool close = false;  // the person wants it to end
 };
 
 // A place to draw on with an OpenGL 4.5 core context, current on this thread as long as it lives.

@@ -73,11 +73,11 @@ EGLDisplay sharedDisplay() {
 }  // namespace
 
 struct Context::State {
-  EGLDisplay display = sharedDisplay();
-  EGLContext context = EGL_NO_CONTEXT;
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;  // its own, if it has one
   std::string first_error;
 
-  State() {
+  State() : display(sharedDisplay()) {
     if (!eglBindAPI(EGL_OPENGL_API)) unavailable("EGL has no desktop OpenGL");
     if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context"))
       unavailable("EGL cannot draw without a surface (EGL_KHR_surfaceless_context)");
@@ -102,7 +102,13 @@ struct Context::State {
       unavailable(reason);
     }
   }
+  explicit State(Adopt) {
+    constexpr int kNeeded = 45;
+    if (const int version = epoxy_gl_version(); version < kNeeded)
+      unavailable("the window has " + std::to_string(version / 10) + "." + std::to_string(version % 10));
+  }
   ~State() {
+    if (context == EGL_NO_CONTEXT) return;
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
   }
@@ -111,6 +117,14 @@ struct Context::State {
 };
 
 Context::Context() : state_(std::make_unique<State>()) {
+  listen();
+}
+
+Context::Context(Adopt adopt) : state_(std::make_unique<State>(adopt)) {
+  listen();
+}
+
+void Context::listen() {
   // The driver calls this from C: it must not throw, so the error waits for requireNoError.
   const auto remember = [](GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message, const void* user) {
     State& state = *static_cast<State*>(const_cast<void*>(user));

@@ -5,11 +5,14 @@
 
 namespace sunfleck::gl {
 
-// An OpenGL 4.5 core context without a window or a display, current on the thread that made it until it is destroyed.
-// Throws std::runtime_error with one line when the machine offers none.
+// An OpenGL 4.5 core context, current on the thread that made it until it is destroyed. Throws std::runtime_error with
+// one line when the machine offers none.
 class Context {
  public:
-  Context();
+  Context();  // without a window or a display
+  // The one that is current, such as a window's; its owner keeps it.
+  enum class Adopt { current };
+  explicit Context(Adopt);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -20,6 +23,7 @@ class Context {
   void requireNoError(const std::string& work) const;
 
  private:
+  void listen();  // to what the driver reports
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -20,11 +20,21 @@ std::string lastError() {
 
 int keyOf(int glfw) {
   static const std::map<int, int> kNamed{
-      {GLFW_KEY_ESCAPE, kEscape},          {GLFW_KEY_ENTER, kEnter},           {GLFW_KEY_KP_ENTER, kEnter},
-      {GLFW_KEY_TAB, kTab},                {GLFW_KEY_BACKSPACE, kBackspace},   {GLFW_KEY_DELETE, kDelete},
-      {GLFW_KEY_LEFT, kLeft},              {GLFW_KEY_RIGHT, kRight},           {GLFW_KEY_UP, kUp},
-      {GLFW_KEY_DOWN, kDown},              {GLFW_KEY_HOME, kHome},             {GLFW_KEY_END, kEnd},
-      {GLFW_KEY_LEFT_SHIFT, kShift},       {GLFW_KEY_RIGHT_SHIFT, kShift},     {GLFW_KEY_LEFT_CONTROL, kControl},
+      {GLFW_KEY_ESCAPE, kEscape},
+      {GLFW_KEY_ENTER, kEnter},
+      {GLFW_KEY_KP_ENTER, kEnter},
+      {GLFW_KEY_TAB, kTab},
+      {GLFW_KEY_BACKSPACE, kBackspace},
+      {GLFW_KEY_DELETE, kDelete},
+      {GLFW_KEY_LEFT, kLeft},
+      {GLFW_KEY_RIGHT, kRight},
+      {GLFW_KEY_UP, kUp},
+      {GLFW_KEY_DOWN, kDown},
+      {GLFW_KEY_HOME, kHome},
+      {GLFW_KEY_END, kEnd},
+      {GLFW_KEY_LEFT_SHIFT, kShift},
+      {GLFW_KEY_RIGHT_SHIFT, kShift},
+      {GLFW_KEY_LEFT_CONTROL, kControl},
       {GLFW_KEY_RIGHT_CONTROL, kControl},
   };
   const auto named = kNamed.find(glfw);
@@ -45,16 +55,15 @@ class GlfwWindow final : public Window {
     if (!window_) {
       const std::string reason = lastError();
       glfwTerminate();
-      throw std::runtime_error("a window needs OpenGL 4.5 (core profile), which this display's driver does not offer: " +
-                               reason);
+      throw std::runtime_error(
+          "a window needs OpenGL 4.5 (core profile), which this display's driver does not offer: " + reason);
     }
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
     input_.held.assign(kKeys, false);
-    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double steps) {
-      of(w).input_.wheel += static_cast<float>(steps);
-    });
+    glfwSetScrollCallback(window_,
+                          [](GLFWwindow* w, double, double steps) { of(w).input_.wheel += static_cast<float>(steps); });
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned code) { of(w).input_.typed.push_back(code); });
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int glfw, int, int action, int) {
       const int key = keyOf(glfw);
