@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -12,7 +13,7 @@
 #include "apps/terminal.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
-#include "render/gl/tree_picture.hpp"
+#include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
 
 namespace sunfleck::apps {
@@ -34,17 +35,18 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  const Model model = options.model == "ss" ? Model::ss : options.model == "spp" ? Model::spp : Model::sppg;
+  const Model model = *std::ranges::find(kModels, options.model, nameOf);
   StandGeometry stand(options.effort);
-  requireModelled(scene);
   stand.update(scene, needsOf(model), treesInPicture(scene, cameraOf(scene)),
                terminalProgress("opacity maps and cells", run.quiet));
   const double prepared = seconds();
   const Image image = [&] {
     try {
       return modelPicture(scene, stand, model, terminalProgress("drawing", run.quiet));
-    } catch (const gl::MapTooLarge& e) {
-      throw InvalidInput(fmt::format("--map = {}: {}", options.effort.light_resolution, e.what()));
+    } catch (const gl::TooLarge& e) {
+      const std::string what = e.what();
+      const bool of_map = what.starts_with("the light's opacity map");
+      throw InvalidInput(of_map ? fmt::format("--map = {}: {}", options.effort.light_resolution, what) : what);
     }
   }();
   const double shaded = seconds() - prepared;
@@ -74,8 +76,9 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
   command->add_option("-o,--output", render->output, "Picture to write: .exr (radiances) or .png")->required();
   command
       ->add_option("--model", render->model,
-                   "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default)")
-      ->check(CLI::IsMember({"ss", "spp", "sppg"}));
+                   "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); nstreamg: a better "
+                   "slab with G-factor")
+      ->check(CLI::IsMember({"ss", "spp", "sppg", "nstreamg"}));
   command->add_option("--exposure", render->exposure, "Factor from radiance to brightness in a .png (default 3)")
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")

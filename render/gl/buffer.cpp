@@ -25,6 +25,21 @@ Buffer::Buffer(std::span<const std::byte> content) : name_(created()), bytes_(co
   glNamedBufferStorage(name_.get(), static_cast<GLsizeiptr>(content.size()), content.data(), 0);
 }
 
+Buffer::Buffer(std::size_t bytes) : name_(created()), bytes_(bytes) {
+  glNamedBufferStorage(name_.get(), static_cast<GLsizeiptr>(std::max(bytes, kNothing.size())), nullptr,
+                       GL_DYNAMIC_STORAGE_BIT);
+}
+
+Buffer Buffer::writable(std::size_t bytes) {
+  return Buffer(bytes);
+}
+
+void Buffer::write(std::size_t first_byte, std::span<const std::byte> content) {
+  if (content.empty()) return;
+  glNamedBufferSubData(name_.get(), static_cast<GLintptr>(first_byte), static_cast<GLsizeiptr>(content.size()),
+                       content.data());
+}
+
 std::size_t Buffer::largestStorage() {
   GLint64 most = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);

@@ -8,7 +8,7 @@
 
 namespace sunfleck::gl {
 
-// Memory of the current context, filled once from the program's.
+// Memory of the current context, filled once from the program's, or by and by.
 class Buffer {
  public:
   // Values of a plain type, laid out as the shaders read them. An empty span becomes a few zero bytes, since OpenGL
@@ -18,6 +18,9 @@ class Buffer {
   template <typename T>
   explicit Buffer(const std::vector<T>& values) : Buffer(std::span<const T>(values)) {}
   explicit Buffer(std::span<const std::byte> content);
+  // Room that is filled by and by.
+  static Buffer writable(std::size_t bytes);
+  void write(std::size_t first_byte, std::span<const std::byte> content);
 
   static std::size_t largestStorage();  // that shaders of the current context may read [byte]
   // Binds it for all shaders. Throws std::runtime_error when it is larger than the driver lets a shader read.
@@ -34,6 +37,7 @@ class Buffer {
   }
 
  private:
+  explicit Buffer(std::size_t bytes);
   static void destroy(unsigned name);
   void readInto(std::span<std::byte> content) const;
   ObjectName<&Buffer::destroy> name_;

@@ -1,42 +1,58 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-// What the shaders read, as they lay it out: the C++ side of frame.glsl and foliage.glsl.
+// What the shaders read, as they lay it out: the C++ side of frame.glsl, where each field is explained.
 namespace sunfleck::gl::detail {
+
+struct LightFrame {
+  glm::vec4 right{0.f}, up{0.f}, travel{0.f};
+  glm::uvec4 grid{0u};
+};
 
 struct FrameData {
   glm::mat4 clip_from_world{1.f};
-  glm::vec4 to_eye{0.f};
-  glm::vec4 sun{0.f};
-  glm::vec4 map_right{0.f}, map_up{0.f}, map_size{0.f};
-  glm::vec4 cell_low{0.f}, cell_count{1.f};
-  glm::vec4 ground_albedo{0.f};
-  glm::vec4 ground{0.f};
-  glm::uvec4 choice{0u};
+  glm::vec4 eye{0.f}, sight{0.f}, corner{0.f}, pixel_right{0.f}, pixel_up{0.f};
+  glm::vec4 ground{0.f}, ground_albedo{0.f}, period{0.f}, sky_azimuth{0.f};
+  glm::uvec4 counts{0u}, cells{1u}, blocks{0u};
+  std::array<LightFrame, 4> lights{};
 };
-static_assert(sizeof(FrameData) == 64 + 9 * 16 + 16);
+static_assert(sizeof(FrameData) == 64 + 12 * 16 + 4 * 64);
 
-struct InstanceData {
+struct TreeData {
   glm::vec4 position{0.f};
-  glm::uvec4 neighbours{0u};
+  glm::uvec4 kind{0u};
 };
-static_assert(sizeof(InstanceData) == 32);
 
-struct NeighbourData {
-  glm::vec4 in_map{0.f}, in_space{0.f};
+struct DrawnData {
+  glm::vec3 position{0.f};
+  std::uint32_t number = 0;
 };
-static_assert(sizeof(NeighbourData) == 32);
 
-// A corner of a triangle of leaf or wood.
-struct VertexData {
+struct KindFrame {
+  glm::vec4 cell_low{0.f, 0.f, 0.f, 1.f};
+  glm::uvec4 cell_count{1u, 1u, 1u, 0u};
+};
+
+struct MapFrame {
+  glm::vec4 origin{0.f, 0.f, 0.f, 1.f}, corner{0.f};
+  glm::uvec4 size{0u};
+};
+
+struct MapLine {
+  std::uint32_t first, end;
+  float wood_depth;
+};
+
+struct CasterData {
   glm::vec3 position;
-  std::uint32_t leaf;
-  glm::vec3 normal;
+  std::uint32_t tree;
 };
-static_assert(sizeof(VertexData) == 28);
+
+inline constexpr std::uint32_t kNone = ~0u, kGround = ~0u - 1;
 
 }  // namespace sunfleck::gl::detail

@@ -11,9 +11,9 @@
 
 namespace sunfleck::gl {
 
-// The plain arrays of a prototype's deep opacity map along the sun (D3), as the shaders read them.
-struct SunMap {
-  Axes axes;                             // `along`: the direction in which sunlight travels
+// The plain arrays of a kind's deep opacity map along a light (D3), as the shaders read them.
+struct LightMap {
+  Axes axes;                             // `along`: the direction in which the light travels
   glm::vec3 origin{0.f};                 // (right, up, depth) of the prototype's origin [m]
   glm::vec2 corner{0.f};                 // (right, up) of pixel (0, 0)'s outer corner [m]
   float pixel_size = 1.f;                // [m], > 0
@@ -21,11 +21,13 @@ struct SunMap {
   std::span<const std::uint32_t> first;  // those of pixel i are crossings[first[i]] .. crossings[first[i + 1] - 1]
   std::span<const Crossing> crossings;   // sorted by depth within a pixel
   std::span<const float> wood_depth;     // per pixel; infinity where there is no wood [m]
-
-  // (right, up, depth) of a displacement [m].
-  glm::vec3 alongAxes(glm::vec3 displacement) const {
-    return {glm::dot(displacement, axes.right), glm::dot(displacement, axes.up), glm::dot(displacement, axes.along)};
-  }
+  std::uint64_t revision = 1;            // another whenever the content is another
 };
+LightMap lightMap(const DeepOpacityMap& map, std::uint64_t revision = 1);
+
+// (right, up, depth) of a displacement [m].
+inline glm::vec3 alongAxes(const Axes& axes, const glm::vec3& displacement) {
+  return {glm::dot(displacement, axes.right), glm::dot(displacement, axes.up), glm::dot(displacement, axes.along)};
+}
 
 }  // namespace sunfleck::gl

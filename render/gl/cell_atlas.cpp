@@ -1,0 +1,98 @@
+#include "render/gl/cell_atlas.hpp"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <string>
+
+#include "render/gl/buffer_texture.hpp"
+
+namespace sunfleck::gl {
+namespace {
+
+bool told(const DrawnTree& tree) {
+  return !tree.sky_light.values.empty() ||
+         std::ranges::any_of(tree.compensation, [](const auto& of_light) { return !of_light.values.empty(); });
+}
+
+bool skyTold(const DrawnStand& stand) {
+  return std::ranges::any_of(stand.trees, [](const DrawnTree& tree) { return !tree.sky_light.values.empty(); });
+}
+
+// Blocks along x, y and z for so many, as even as may be.
+glm::ivec3 blocksFor(std::size_t count, const glm::ivec3& block) {
+  const glm::ivec3 most = glm::max(VolumeTexture::longestSide() / block, glm::ivec3(1));
+  glm::ivec3 blocks(1);
+  const auto room = [&] { return static_cast<std::size_t>(blocks.x) * static_cast<std::size_t>(blocks.y * blocks.z); };
+  while (room() < count) {
+    glm::ivec3 larger = glm::min(2 * blocks, most);
+    int axis = blocks.z <= blocks.y && blocks.z <= blocks.x ? 2 : blocks.y <= blocks.x ? 1 : 0;
+    for (int tries = 0; tries < 3 && larger[axis] == blocks[axis]; ++tries) axis = (axis + 1) % 3;
+    if (larger[axis] == blocks[axis])
+      throw TooLarge("G of " + std::to_string(count) + " trees does not fit into one texture: OpenGL allows " +
+                     std::to_string(room()));
+    blocks[axis] = larger[axis];
+  }
+  return blocks;
+}
+
+}  // namespace
+
+std::size_t CellAtlas::update(const DrawnStand& stand) {
+  std::vector<Held> now(stand.trees.size());
+  std::uint32_t count = 0;
+  for (std::size_t tree = 0; tree < now.size(); ++tree) {
+    const DrawnTree& drawn = stand.trees[tree];
+    if (!told(drawn)) continue;
+    now[tree].block = count++;
+    for (std::size_t light = 0; light < kMostLights; ++light)
+      now[tree].compensation[light] =
+          drawn.compensation[light].values.empty() ? 0 : drawn.compensation[light].revision;
+    now[tree].sky_light = drawn.sky_light.values.empty() ? 0 : drawn.sky_light.revision;
+    now[tree].source = drawn.compensation[0].values.data();
+  }
+  glm::ivec3 block_size(1);
+  for (const DrawnKind& kind : stand.kinds) block_size = glm::max(block_size, kind.cells.size);
+  const bool with_sky = skyTold(stand);
+  const auto room = static_cast<std::uint32_t>(blocks_.x * blocks_.y * blocks_.z);
+  if (!compensation_ || block_size != block_size_ || count > room || (with_sky && sky_->size() == glm::ivec3(1))) {
+    block_size_ = block_size;
+    blocks_ = blocksFor(std::max<std::size_t>(count, 1), block_size);
+    compensation_.emplace(block_size_ * blocks_);
+    sky_.emplace(with_sky ? block_size_ * blocks_ : glm::ivec3(1));
+    trees_.clear();
+  }
+  trees_.resize(now.size());
+  std::size_t sent = 0;
+  for (std::size_t tree = 0; tree < now.size(); ++tree)
+    if (now[tree].block != ~0u && now[tree] != trees_[tree]) sent += send(stand, tree, now[tree]);
+  trees_ = std::move(now);
+  return sent;
+}
+
+std::size_t CellAtlas::send(const DrawnStand& stand, std::size_t tree, const Held& now) {
+  const DrawnTree& drawn = stand.trees[tree];
+  const glm::ivec3 size = glm::max(stand.kinds[drawn.kind].cells.size, glm::ivec3(1));
+  const int block = static_cast<int>(now.block);
+  const glm::ivec3 corner =
+      block_size_ * glm::ivec3(block % blocks_.x, block / blocks_.x % blocks_.y, block / (blocks_.x * blocks_.y));
+  const auto cells = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y * size.z);
+  std::vector<glm::vec4> values(cells, glm::vec4(1.f));
+  for (std::size_t light = 0; light < kMostLights; ++light) {
+    const std::span<const float> of_light = drawn.compensation[light].values;
+    for (std::size_t cell = 0; cell < std::min(cells, of_light.size()); ++cell)
+      values[cell][static_cast<int>(light)] = of_light[cell];
+  }
+  compensation_->write(corner, size, values);
+  if (drawn.sky_light.values.empty()) return values.size() * sizeof values[0];
+  for (std::size_t cell = 0; cell < std::min(cells, drawn.sky_light.values.size()); ++cell)
+    values[cell] = glm::vec4(drawn.sky_light.values[cell], 0.f);
+  sky_->write(corner, size, values);
+  return 2 * values.size() * sizeof values[0];
+}
+
+void CellAtlas::bind(unsigned compensation, unsigned sky) const {
+  compensation_->bind(compensation);
+  sky_->bind(sky);
+}
+
+}  // namespace sunfleck::gl

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/gl/light_map.hpp"
+#include "render/scene.hpp"
+#include "render/stand_geometry.hpp"
+#include "sky/sky_map.hpp"
+
+// All that a picture of a stand is made of, as plain data. What is spanned is only read while it is sent.
+namespace sunfleck::gl {
+
+inline constexpr std::size_t kMostLights = kMostSuns;
+
+struct DrawnLight {
+  Direction along{0.f, 0.f, -1.f};  // in which it travels
+  glm::vec3 irradiance{1.f};        // of a plane that faces it, per band [1]
+};
+
+// The cells of a kind (grid/cell_grid.hpp).
+struct DrawnCells {
+  glm::vec3 low{0.f};     // corner of cell (0, 0, 0) in the prototype's frame [m]
+  float cell_size = 1.f;  // [m], > 0
+  glm::ivec3 size{0};     // [cell]; 0: there are none
+};
+
+struct DrawnKind {
+  TreeKind tree;  // its mesh turned as its trees stand
+  DrawnCells cells;
+  std::vector<LightMap> maps;  // of each light
+};
+
+// Values of all cells of a tree; another revision whenever they are others.
+template <typename Value>
+struct CellValues {
+  std::span<const Value> values;  // empty: not told
+  std::uint64_t revision = 1;
+};
+
+struct DrawnTree {
+  glm::vec3 position{0.f};  // [m]
+  std::uint32_t kind = 0;
+  std::array<CellValues<float>, kMostLights> compensation;  // G for each light; where not told, 1
+  CellValues<glm::vec3> sky_light;                          // mean radiance; where not told, 0 [1/sr]
+};
+
+struct DrawnStand {
+  std::vector<DrawnLight> lights;  // at most kMostLights
+  std::vector<DrawnKind> kinds;
+  std::vector<DrawnTree> trees;
+  std::optional<glm::vec2> period;  // [m]
+  glm::ivec2 periods_around{0};     // in which copies may stand in the light
+  glm::vec3 ground_albedo{0.f};     // per band [1]; 0 in all: there is none
+  std::shared_ptr<const SkyMap> sky;
+};
+
+// `geometry` is up to date for the scene. G and sky light are told of the trees for which it has them.
+DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry);
+
+}  // namespace sunfleck::gl

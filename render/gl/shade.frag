@@ -1,0 +1,168 @@
+#version 450 core
+// (R24) Every pixel once: which triangle it shows is known, where its line of sight meets it follows.
+#include "render/gl/prelude.glsl"
+#include "spp/spp_formulas.glsl"
+#include "render/gl/frame.glsl"
+#include "render/gl/foliage.glsl"
+#include "render/gl/cells.glsl"
+#include "render/gl/shading.glsl"
+
+layout(binding = 6) uniform usampler2D visible;
+layout(binding = 7) uniform samplerBuffer triangles;  // two rows for each: see tree_levels.hpp
+layout(binding = 8) uniform sampler2D sky_radiance;   // rows from the zenith down [1/sr]
+
+layout(location = 0) out vec4 total;  // rgb: radiance; a: coverage by trees and ground
+#ifdef LAYERS
+layout(location = 1) out vec4 direct;
+layout(location = 2) out vec4 single;
+layout(location = 3) out vec4 multiple;
+layout(location = 4) out vec4 of_sky;
+layout(location = 5) out vec4 geometry;  // xyz: normal; w: distance along the middle line of sight [m]
+layout(location = 6) out vec4 foliage_of_light;  // n+, n-, visible, G
+layout(location = 7) out uvec4 ids;              // drawn tree, triangle, kind, leaf
+#endif
+
+struct Sight {
+  vec3 from;
+  vec3 along;
+};
+Sight sightThrough(vec2 pixel) {
+  vec3 aside = corner.xyz + pixel.x * pixel_right.xyz + pixel.y * pixel_up.xyz;
+  return eye.w > 0.0 ? Sight(eye.xyz, normalize(aside)) : Sight(eye.xyz + aside, sight.xyz);
+}
+
+// Sums over the lights.
+Shaded light_sum = Shaded(vec3(0.0), vec3(0.0), vec3(0.0));
+vec3 sky_sum = vec3(0.0);
+void addLight(Shaded shaded, uint light, Foliage foliage, float compensation) {
+  light_sum.direct += shaded.direct;
+  light_sum.single += shaded.single;
+  light_sum.multiple += shaded.multiple;
+#ifdef LAYERS
+  if (light == counts.z) foliage_of_light = vec4(foliage.before, foliage.beyond, foliage.visible, compensation);
+#endif
+}
+
+void shadeTree(uvec2 id, Sight look) {
+  vec3 stands_here = drawn[id.x].position;
+  uint tree = id.x % counts.y;
+  uint kind = trees[tree].kind.x;
+  int triangle = 2 * int(kind_frames[kind].cell_count.w + id.y);
+  vec4 plane = texelFetch(triangles, triangle), of_leaf = texelFetch(triangles, triangle + 1);
+  float enlargement = length(plane.xyz);
+  vec3 normal = plane.xyz / enlargement;
+  vec3 from = look.from - stands_here;
+  float away = (plane.w - dot(normal, from)) / dot(normal, look.along);
+  vec3 place = from + away * look.along;
+  if (dot(normal, look.along) > 0.0) normal = -normal;
+
+  uint leaf = floatBitsToUint(of_leaf.w);
+  bool wood = leaf == kNoLeaf;
+  // The light is that of the true leaf, however enlarged it is drawn.
+  vec3 lit = wood ? place : of_leaf.xyz + (place - of_leaf.xyz) / enlargement;
+  Surface surface = wood ? woodSurface(kind, tree, normal, -look.along) : leafSurface(kind, tree, leaf, normal, -look.along);
+  for (uint light = 0u; light < counts.x; ++light) {
+    float bias = woodBias(wood ? dot(normal, light_frames[light].travel.xyz) : 1.0);
+    Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, bias);
+    // A leaf is itself a part of the slab's thickness.
+    float thickness = foliage.before + foliage.beyond + (wood ? 0.0 : 1.0);
+    float compensation = NEEDS_COMPENSATION ? compensationAt(lit, tree, light) : 1.0;
+    addLight(shadeByLight(surface, foliage, thickness, compensation, light), light, foliage, compensation);
+  }
+  if (blocks.y > 0u) {
+    Shaded shaded = shadeBySky(surface, skyLightAt(lit, tree));
+    sky_sum = shaded.direct + shaded.single + shaded.multiple;
+  }
+#ifdef LAYERS
+  geometry = vec4(normal, dot(away * look.along, sight.xyz));
+  ids = uvec4(id, kind, leaf);
+#endif
+}
+
+// The last leaf that light on its way to a place of the ground can meet: what sends the slab's light down to here.
+struct LastLeaf {
+  uint tree;   // kNone: there is no leaf
+  vec3 place;  // in the tree's frame [m]
+};
+LastLeaf lastLeaf(uint light, vec3 here) {
+  LastLeaf last = LastLeaf(kNone, vec3(0.0));
+  float nearest = 1e30;
+  uvec2 casters = castersAt(light, here);
+  for (uint c = casters.x; c < casters.y; ++c) {
+    Caster caster = casterAt(c);
+    MapFrame map = map_frames[4u * trees[caster.tree].kind.x + light];
+    vec3 in_tree = inLight(light, here - caster.position) + map.origin.xyz;
+    Nearest near = nearestPixels(map, in_tree);
+    ivec2 pixel = near.pixel + ivec2(greaterThan(near.part, vec2(0.5)));
+    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(map.size.xy)))) continue;
+    uvec3 line = texelFetch(map_lines, int(map.size.z) + pixel.y * int(map.size.x) + pixel.x).xyz;
+    if (line.x == line.y) continue;
+    float way = in_tree.z - uintBitsToFloat(texelFetch(map_crossings, int(map.size.w + line.y) - 1).x);
+    if (way >= nearest) continue;
+    nearest = way;
+    last = LastLeaf(caster.tree, here - caster.position - way * light_frames[light].travel.xyz);
+  }
+  return last;
+}
+
+// (R3) The ground: a Lambertian disc that fades towards its rim. Gives its coverage.
+float shadeGround(Sight look) {
+  if (ground_albedo.w == 0.0 || look.along.z >= 0.0) return 0.0;
+  float away = (ground.z - look.from.z) / look.along.z;
+  vec3 place = look.from + away * look.along;
+  float from_centre = distance(place.xy, ground.xy) / ground.w;
+  if (from_centre >= 1.0 || (eye.w > 0.0 && away <= 0.0)) return 0.0;
+  vec3 here = place;
+  if (period.x > 0.0) here.xy -= floor((here.xy - period.zw) / period.xy) * period.xy;
+  for (uint light = 0u; light < counts.x; ++light) {
+    Foliage foliage = foliageAt(light, here, vec3(0.0), kNone, kNoLeaf, 1.0);
+    LastLeaf last = lastLeaf(light, here);
+    float compensation =
+        NEEDS_COMPENSATION && last.tree != kNone ? compensationAt(last.place, last.tree, light) : 1.0;
+    uint kind = last.tree == kNone ? 0u : trees[last.tree].kind.x;
+    Surface surface = opaqueSurface(kind, kNone, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), -look.along);
+    addLight(shadeByLight(surface, foliage, foliage.before + foliage.beyond, compensation, light), light, foliage,
+             compensation);
+  }
+#ifdef LAYERS
+  geometry = vec4(0.0, 0.0, 1.0, dot(away * look.along, sight.xyz));
+  ids = uvec4(kGround, kNone, kNone, kNoLeaf);
+#endif
+  return 1.0 - smoothstep(0.6, 1.0, from_centre);
+}
+
+const float kPi = 3.14159265;
+vec3 skyTowards(vec3 to_sky) {
+  if (blocks.y == 0u || to_sky.z <= 0.0) return vec3(0.0);
+  vec2 rows_columns = vec2(blocks.yz);
+  float row = acos(min(to_sky.z, 1.0)) / (0.5 * kPi) * rows_columns.x;
+  float turn = (atan(to_sky.y, to_sky.x) - sky_azimuth.x) / (2.0 * kPi);
+  float column = (turn - floor(turn)) * rows_columns.y;
+  return texelFetch(sky_radiance, min(ivec2(column, row), ivec2(blocks.zy) - 1), 0).rgb;
+}
+
+void main() {
+#ifdef LAYERS
+  geometry = vec4(0.0, 0.0, 0.0, 1.0 / 0.0);
+  foliage_of_light = vec4(0.0);
+  ids = uvec4(kNone, kNone, kNone, kNoLeaf);
+#endif
+  Sight look = sightThrough(gl_FragCoord.xy + vec2(pixel_right.w, pixel_up.w));
+  uvec2 id = texelFetch(visible, ivec2(gl_FragCoord.xy), 0).xy;
+  float coverage = 1.0;
+  vec3 behind = vec3(0.0);
+  if (id.x < kGround) {
+    shadeTree(id, look);
+  } else {
+    coverage = shadeGround(look);
+    behind = skyTowards(look.along);
+  }
+  vec3 of_lights = light_sum.direct + light_sum.single + light_sum.multiple;
+  total = vec4(coverage * (of_lights + sky_sum) + (1.0 - coverage) * behind, coverage);
+#ifdef LAYERS
+  direct = vec4(coverage * light_sum.direct, coverage);
+  single = vec4(coverage * light_sum.single, coverage);
+  multiple = vec4(coverage * light_sum.multiple, coverage);
+  of_sky = vec4(coverage * sky_sum + (1.0 - coverage) * behind, coverage);
+#endif
+}

@@ -1,0 +1,206 @@
+#include "render/gl/stand_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "render/gl/light_grid.hpp"
+
+namespace sunfleck::gl {
+namespace {
+
+using namespace detail;
+
+constexpr float kGroundRadii = 3.f;     // of the widest crown, from a tree's axis to the rim of the ground
+constexpr float kEmptyGround = 10.f;    // radius of the ground where nothing stands [m]
+
+bool anyAbove(const glm::vec3& values, float bound) {
+  return values.x > bound || values.y > bound || values.z > bound;
+}
+
+// Displacements of the copies that are drawn or may stand in the light, the stand itself first [m].
+std::vector<glm::vec3> copies(const DrawnStand& stand, glm::ivec2 around) {
+  std::vector<glm::vec3> shifts{glm::vec3(0.f)};
+  if (!stand.period) return shifts;
+  for (int y = -around.y; y <= around.y; ++y)
+    for (int x = -around.x; x <= around.x; ++x)
+      if (x != 0 || y != 0)
+        shifts.push_back({static_cast<float>(x) * stand.period->x, static_cast<float>(y) * stand.period->y, 0.f});
+  return shifts;
+}
+
+Bounds moved(const Bounds& box, const glm::vec3& by) {
+  return {box.low + by, box.high + by};
+}
+
+LightBox united(const LightBox& a, const LightBox& b) {
+  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
+}
+
+// A map's rectangle, and the half pixel more that interpolation reaches.
+LightBox rectangleOf(const LightMap& map, const glm::vec3& position) {
+  const glm::vec2 low = map.corner - glm::vec2(map.origin) + glm::vec2(alongAxes(map.axes, position));
+  return {low - map.pixel_size, low + map.pixel_size * (glm::vec2(map.size) + 1.f)};
+}
+
+}  // namespace
+
+StandData::StandData()
+    : triangles_(BufferTexture::Texel::rgba32f, "the trees' triangles take"),
+      light_cells_(BufferTexture::Texel::r32ui, "the lists of trees in the light take"),
+      light_casters_(BufferTexture::Texel::rgba32ui, "the lists of trees in the light take") {}
+
+Sent StandData::update(const DrawnStand& stand) {
+  Sent sent;
+  lights_ = stand.lights;
+  sent.meshes = updateMeshes(stand);
+  sent.maps = maps_.update(stand);
+  sent.cells = cells_.update(stand);
+  sent.sky = sky_.update(stand.sky);
+  sent.trees = updateTrees(stand);
+  placeGround(stand);
+  sent.trees += sendGrids(stand);
+
+  frame_.counts = {static_cast<std::uint32_t>(lights_.size()), static_cast<std::uint32_t>(stand.trees.size()), 0u, 0u};
+  frame_.cells = glm::uvec4(glm::uvec3(cells_.blockSize()), static_cast<std::uint32_t>(cells_.blocks().x));
+  frame_.blocks = {static_cast<std::uint32_t>(cells_.blocks().y), 0u, 0u, 0u};
+  if (stand.sky) {
+    frame_.blocks.y = static_cast<std::uint32_t>(stand.sky->rows());
+    frame_.blocks.z = static_cast<std::uint32_t>(stand.sky->columns());
+    frame_.sky_azimuth.x = stand.sky->firstAzimuth();
+  }
+  return sent;
+}
+
+std::size_t StandData::updateMeshes(const DrawnStand& stand) {
+  std::size_t sent = 0;
+  tree_kinds_.clear();
+  for (const DrawnKind& kind : stand.kinds) tree_kinds_.push_back(kind.tree);
+  if (kinds_.size() != stand.kinds.size()) kinds_.resize(stand.kinds.size());
+  for (std::size_t i = 0; i < kinds_.size(); ++i) {
+    const std::shared_ptr<const TreeMesh>& mesh = stand.kinds[i].tree.mesh;
+    if (kinds_[i].mesh == mesh) continue;
+    kinds_[i].mesh = mesh;
+    kinds_[i].levels = mesh ? treeLevels(*mesh) : TreeLevels{};
+    kinds_[i].buffers.emplace(kinds_[i].levels);
+    sent += kinds_[i].levels.vertices.size() * sizeof(glm::vec3) +
+            kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
+  }
+  if (sent > 0) {
+    first_triangle_.clear();
+    std::size_t count = 0;
+    for (const Kind& kind : kinds_) {
+      first_triangle_.push_back(static_cast<std::uint32_t>(count));
+      count += kind.levels.triangles.size();
+    }
+    static_assert(sizeof(TriangleData) == 2 * sizeof(glm::vec4));
+    triangles_.resize(2 * count);
+    for (std::size_t i = 0; i < kinds_.size(); ++i)
+      triangles_.write(2 * first_triangle_[i], std::span<const TriangleData>(kinds_[i].levels.triangles));
+    sent += count * sizeof(TriangleData);
+  }
+  std::vector<KindFrame> frames(std::max<std::size_t>(kinds_.size(), 1));
+  for (std::size_t i = 0; i < kinds_.size(); ++i) {
+    const DrawnCells& cells = stand.kinds[i].cells;
+    frames[i] = {.cell_low = glm::vec4(cells.low, 1.f / cells.cell_size),
+                 .cell_count = glm::uvec4(glm::uvec3(glm::max(cells.size, glm::ivec3(1))), first_triangle_[i])};
+  }
+  kind_frames_.emplace(frames);
+  return sent;
+}
+
+std::size_t StandData::updateTrees(const DrawnStand& stand) {
+  std::vector<TreeData> trees;
+  for (std::size_t tree = 0; tree < stand.trees.size(); ++tree)
+    trees.push_back({.position = glm::vec4(stand.trees[tree].position, 0.f),
+                     .kind = {stand.trees[tree].kind, cells_.block(tree), 0u, 0u}});
+  std::vector<DrawnData> drawn;
+  for (Kind& kind : kinds_) kind.drawn.clear();
+  box_ = {};
+  for (const glm::vec3& shift : copies(stand, glm::ivec2(1)))
+    for (const DrawnTree& tree : stand.trees) {
+      drawn.push_back({.position = tree.position + shift, .number = static_cast<std::uint32_t>(drawn.size())});
+      kinds_[tree.kind].drawn.push_back(drawn.back());
+      if (!kinds_[tree.kind].levels.box.empty())
+        box_.include(moved(kinds_[tree.kind].levels.box, drawn.back().position));
+    }
+  drawn_count_ = drawn.size();
+  trees_.emplace(trees);
+  drawn_.emplace(drawn);
+  return trees.size() * sizeof trees[0] + drawn.size() * sizeof drawn[0];
+}
+
+// At the lowest point of the stand, three crown radii beyond its middle and as far again as the stand is wide.
+void StandData::placeGround(const DrawnStand& stand) {
+  Bounds all;
+  float crown_radius = 0.f;
+  for (const DrawnTree& tree : stand.trees) {
+    const Bounds box = bounds(*kinds_[tree.kind].mesh);
+    if (box.empty()) continue;
+    all.include(moved(box, tree.position));
+    crown_radius = std::max({crown_radius, 0.5f * box.size().x, 0.5f * box.size().y});
+  }
+  ground_ = {.centre = glm::vec3(0.f), .radius = kEmptyGround};
+  if (!all.empty())
+    ground_ = {.centre = {all.centre().x, all.centre().y, all.low.z},
+               .radius = 0.5f * std::max(all.size().x, all.size().y) + (kGroundRadii - 1.f) * crown_radius};
+  frame_.ground = glm::vec4(ground_.centre, ground_.radius);
+  frame_.ground_albedo = glm::vec4(stand.ground_albedo, anyAbove(stand.ground_albedo, 0.f) ? 1.f : 0.f);
+  frame_.period = glm::vec4(0.f);
+  if (stand.period)
+    frame_.period = glm::vec4(*stand.period, glm::vec2(ground_.centre) - 0.5f * *stand.period);
+}
+
+std::size_t StandData::sendGrids(const DrawnStand& stand) {
+  // Places that are lit: of the trees of the stand itself, and of the ground, in one period.
+  std::vector<Bounds> lit_boxes;
+  for (const DrawnTree& tree : stand.trees)
+    if (!kinds_[tree.kind].levels.box.empty()) lit_boxes.push_back(moved(kinds_[tree.kind].levels.box, tree.position));
+  const glm::vec3 half = stand.period ? glm::vec3(0.5f * *stand.period, 0.f) : glm::vec3(ground_.radius, ground_.radius, 0.f);
+  lit_boxes.push_back({ground_.centre - half, ground_.centre + half});
+
+  std::vector<std::uint32_t> first_of_cells;
+  std::vector<CasterData> casters;
+  const std::vector<glm::vec3> shifts = copies(stand, stand.periods_around);
+  for (std::size_t light = 0; light < lights_.size(); ++light) {
+    const Axes axes = axesAlong(lights_[light].along);
+    LightBox lit = across(axes, lit_boxes.front());
+    for (const Bounds& box : lit_boxes) lit = united(lit, across(axes, box));
+    lit = {lit.low - 1e-3f, lit.high + 1e-3f};
+    std::vector<LightBox> rectangles;
+    for (const glm::vec3& shift : shifts)
+      for (const DrawnTree& tree : stand.trees)
+        rectangles.push_back(rectangleOf(stand.kinds[tree.kind].maps[light], tree.position + shift));
+    const LightGrid grid = lightGrid(rectangles, lit);
+    frame_.lights[light] = {.right = glm::vec4(axes.right, grid.low.x),
+                            .up = glm::vec4(axes.up, grid.low.y),
+                            .travel = glm::vec4(axes.along, 1.f / grid.cell_size),
+                            .grid = {static_cast<std::uint32_t>(grid.size.x), static_cast<std::uint32_t>(grid.size.y),
+                                     static_cast<std::uint32_t>(first_of_cells.size()), 0u}};
+    for (const std::uint32_t first : grid.first)
+      first_of_cells.push_back(first + static_cast<std::uint32_t>(casters.size()));
+    for (const std::uint32_t caster : grid.casters) {
+      const std::size_t tree = caster % stand.trees.size();
+      casters.push_back({.position = stand.trees[tree].position + shifts[caster / stand.trees.size()],
+                         .tree = static_cast<std::uint32_t>(tree)});
+    }
+  }
+  light_cells_.assign(std::span<const std::uint32_t>(first_of_cells));
+  light_casters_.assign(std::span<const CasterData>(casters));
+  return first_of_cells.size() * sizeof first_of_cells[0] + casters.size() * sizeof casters[0];
+}
+
+void StandData::bind() const {
+  trees_->bindStorage(0);
+  drawn_->bindStorage(1);
+  kind_frames_->bindStorage(2);
+  maps_.bind(0, 1, 3);
+  light_cells_.bind(2);
+  light_casters_.bind(3);
+  cells_.bind(4, 5);
+  triangles_.bind(7);
+  sky_.bind(8);
+}
+
+}  // namespace sunfleck::gl

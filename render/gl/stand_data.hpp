@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/gl/buffer.hpp"
+#include "render/gl/buffer_texture.hpp"
+#include "render/gl/cell_atlas.hpp"
+#include "render/gl/detail/frame_data.hpp"
+#include "render/gl/drawn_stand.hpp"
+#include "render/gl/map_pool.hpp"
+#include "render/gl/sky_texture.hpp"
+#include "render/gl/tree_levels.hpp"
+#include "render/gl/tree_mesh_buffers.hpp"
+
+namespace sunfleck::gl {
+
+// What an update sent to the graphics card [byte].
+struct Sent {
+  std::size_t meshes = 0, maps = 0, trees = 0, cells = 0, sky = 0;
+};
+
+// The ground's disc [m].
+struct GroundDisc {
+  glm::vec3 centre{0.f};
+  float radius = 0.f;
+};
+
+// A stand in the memory of the current context.
+class StandData {
+ public:
+  StandData();
+  // Sends what has changed since the last update. Throws TooLarge with the figure where OpenGL cannot hold it; the
+  // stand is then not to be drawn.
+  Sent update(const DrawnStand& stand);
+
+  // For all shaders, as frame.glsl, foliage.glsl, cells.glsl and shade.frag read them.
+  void bind() const;
+  // What a frame's data say of the stand; the camera's are not set.
+  const detail::FrameData& frame() const { return frame_; }
+
+  struct Kind {
+    std::shared_ptr<const TreeMesh> mesh;
+    TreeLevels levels;
+    std::optional<TreeMeshBuffers> buffers;
+    std::vector<detail::DrawnData> drawn;  // trees of this kind, copies included
+  };
+  const std::vector<Kind>& kinds() const { return kinds_; }
+  const std::vector<TreeKind>& treeKinds() const { return tree_kinds_; }
+  const std::vector<DrawnLight>& lights() const { return lights_; }
+  std::size_t drawnTrees() const { return drawn_count_; }
+  Bounds box() const { return box_; }  // of all that is drawn but the ground [m]
+  const GroundDisc& ground() const { return ground_; }
+
+ private:
+  std::size_t updateMeshes(const DrawnStand& stand);
+  std::size_t updateTrees(const DrawnStand& stand);
+  void placeGround(const DrawnStand& stand);
+  std::size_t sendGrids(const DrawnStand& stand);
+
+  std::vector<Kind> kinds_;
+  std::vector<TreeKind> tree_kinds_;
+  std::vector<DrawnLight> lights_;
+  std::vector<std::uint32_t> first_triangle_;  // of each kind
+  MapPool maps_;
+  CellAtlas cells_;
+  SkyTexture sky_;
+  BufferTexture triangles_, light_cells_, light_casters_;
+  std::optional<Buffer> trees_, drawn_, kind_frames_;
+  std::size_t drawn_count_ = 0;
+  Bounds box_;
+  GroundDisc ground_;
+  detail::FrameData frame_;
+};
+
+}  // namespace sunfleck::gl

@@ -1,0 +1,171 @@
+#include "render/gl/stand_renderer.hpp"
+
+#include <epoxy/gl.h>
+
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+#include <utility>
+
+#include "render/gl/program.hpp"
+#include "render/gl/shading_buffers.hpp"
+#include "render/gl/visible_trees.hpp"
+#include "render/shading/shading_model.hpp"
+
+namespace sunfleck::gl {
+namespace {
+
+using namespace detail;
+
+// Seconds that some work took, the graphics card's included.
+template <typename Work>
+double secondsOf(bool timed, const Work& work) {
+  if (!timed) {
+    work();
+    return 0.;
+  }
+  glFinish();
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  glFinish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void define(Shader& shader, const std::string& name, const std::string& value) {
+  shader.text.insert(shader.text.find('\n') + 1, "#define " + name + " " + value + "\n#line 2\n");
+}
+
+unsigned createdArray() {
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  return name;
+}
+void destroyArray(unsigned name) {
+  glDeleteVertexArrays(1, &name);
+}
+
+shading::ShadingData shadingData(Model model, const StandData& stand) {
+  shading::ShadingData data{
+      .kinds = {}, .lights = {}, .constants = shading::shadingModel(model).constants(stand.treeKinds())};
+  for (const TreeKind& kind : stand.treeKinds()) {
+    shading::KindOptics& optics = data.kinds.emplace_back();
+    for (int band = 0; band < kBands; ++band) {
+      optics.leaf_reflectance[band] = kind.leaf[static_cast<std::size_t>(band)].reflectance;
+      optics.leaf_transmittance[band] = kind.leaf[static_cast<std::size_t>(band)].transmittance;
+      optics.wood_reflectance[band] = kind.wood_reflectance[band];
+    }
+  }
+  for (const DrawnLight& light : stand.lights())
+    data.lights.push_back({.travel = glm::vec4(light.along, 0.f), .irradiance = glm::vec4(light.irradiance, 0.f)});
+  return data;
+}
+
+}  // namespace
+
+// What is made once for each model.
+struct StandRenderer::Programs {
+  Program visible{shaderOf(Stage::vertex, "render/gl/visible.vert"),
+                  shaderOf(Stage::fragment, "render/gl/visible.frag")};
+  ObjectName<destroyArray> no_array{createdArray()};
+  std::map<std::pair<Model, bool>, Program> shading;
+  std::map<Model, ShadingBuffers> buffers;  // of the stand as it is
+
+  const Program& shadingBy(Model model, bool layers) {
+    const auto key = std::pair(model, layers);
+    auto found = shading.find(key);
+    if (found == shading.end()) {
+      Shader shader = shadingShader(Stage::fragment, "render/gl/shade.frag", model);
+      define(shader, "NEEDS_COMPENSATION", needsCompensation(model) ? "true" : "false");
+      if (layers) define(shader, "LAYERS", "1");
+      found = shading.emplace(key, Program({shaderOf(Stage::vertex, "render/gl/screen.vert"), shader})).first;
+    }
+    return found->second;
+  }
+  const ShadingBuffers& buffersOf(Model model, const StandData& stand) {
+    auto found = buffers.find(model);
+    if (found == buffers.end()) found = buffers.emplace(model, ShadingBuffers(shadingData(model, stand))).first;
+    return found->second;
+  }
+};
+
+StandRenderer::StandRenderer(const Context& context) 
+    : context_(&context), frame_(Buffer::writable(sizeof(FrameData))), programs_(std::make_unique<Programs>()) {}
+StandRenderer::~StandRenderer() = default;
+
+Sent StandRenderer::update(const DrawnStand& stand) {
+  const Sent sent = data_.update(stand);
+  programs_->buffers.clear();
+  context_->requireNoError("loading the trees");
+  return sent;
+}
+
+// Everything that is drawn lies within this distance of the camera's target.
+float StandRenderer::reach(const View& view) const {
+  float reach = glm::length(data_.ground().centre - view.camera.target) + 1.5f * data_.ground().radius;
+  if (!data_.box().empty())
+    reach = std::max(reach, glm::length(data_.box().centre() - view.camera.target) +
+                                0.5f * glm::length(data_.box().size()));
+  return reach;
+}
+
+void StandRenderer::bindFrame(const View& view, const FrameTarget& target) {
+  const Camera& camera = view.camera;
+  const Axes axes = viewAxes(camera);
+  const float pixel = 2.f * camera.half_width / static_cast<float>(camera.width);
+  const glm::vec2 half(camera.half_width, 0.5f * pixel * static_cast<float>(camera.height));
+  glm::vec3 corner = -half.x * axes.right - half.y * axes.up;
+  FrameData frame = data_.frame();
+  frame.clip_from_world = clipFromWorld(view, target.size(), reach(view));
+  frame.eye = glm::vec4(camera.target, 0.f);
+  if (camera.perspective()) {
+    frame.eye = glm::vec4(eyeOf(camera), 1.f);
+    corner += camera.target - eyeOf(camera);
+  }
+  frame.sight = glm::vec4(axes.along, 0.f);
+  frame.corner = glm::vec4(corner, 0.f);
+  frame.pixel_right = glm::vec4(pixel * axes.right, static_cast<float>(view.low.x) + view.offset.x);
+  frame.pixel_up = glm::vec4(pixel * axes.up, static_cast<float>(view.low.y) + view.offset.y);
+  frame.counts.z = view.layer_light;
+  frame_.write(0, std::as_bytes(std::span(&frame, 1)));
+  frame_.bindUniform(0);
+}
+
+FrameCost StandRenderer::draw(const View& view, FrameTarget& target) {
+  FrameCost cost;
+  cost.visible_seconds = secondsOf(timed_, [&] {
+    bindFrame(view, target);
+    target.beginVisible();
+    programs_->visible.use();
+    const glm::mat4 clip = clipFromWorld(view, target.size(), reach(view));
+    for (const StandData::Kind& kind : data_.kinds()) {
+      if (kind.drawn.empty()) continue;
+      const VisibleTrees visible = visibleTrees(kind.levels, kind.drawn, view, clip);
+      kind.buffers->draw(visible);
+      cost.triangles += visible.triangles;
+      cost.draw_calls += visible.commands.size();
+    }
+  });
+  return shade(view, target, cost);
+}
+
+FrameCost StandRenderer::draw(const View& view, FrameTarget& target, std::span<const glm::uvec2> visible) {
+  bindFrame(view, target);
+  target.setVisible(visible);
+  return shade(view, target, {});
+}
+
+FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost cost) {
+  cost.shading_seconds = secondsOf(timed_, [&] {
+    target.beginShading(view.accumulate);
+    data_.bind();
+    glBindTextureUnit(6, target.visible());
+    programs_->buffersOf(view.model, data_).bind();
+    programs_->shadingBy(view.model, target.hasLayers()).use();
+    glBindVertexArray(programs_->no_array.get());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  });
+  return cost;
+}
+
+}  // namespace sunfleck::gl

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "render/gl/context.hpp"
+#include "render/gl/drawn_stand.hpp"
+#include "render/gl/frame_target.hpp"
+#include "render/gl/stand_data.hpp"
+#include "render/gl/view.hpp"
+
+namespace sunfleck::gl {
+
+// What a frame took, and what it drew.
+struct FrameCost {
+  std::size_t triangles = 0, draw_calls = 0;
+  double visible_seconds = 0., shading_seconds = 0.;  // 0 where it was not timed
+};
+
+// (R24) A stand on the GPU, seen by any camera and shaded by any model: what each pixel shows is found first, then every
+// pixel is shaded once. A `context` must be current wherever it is used, and outlive it.
+class StandRenderer {
+ public:
+  explicit StandRenderer(const Context& context);
+  ~StandRenderer();
+  StandRenderer(const StandRenderer&) = delete;
+  StandRenderer& operator=(const StandRenderer&) = delete;
+
+  // Sends what has changed since the last update, and says how much. Throws TooLarge with the figure where OpenGL cannot
+  // hold the stand.
+  Sent update(const DrawnStand& stand);
+
+  // Draws the stand into the target's textures. The same picture is the same bits on the same driver.
+  FrameCost draw(const View& view, FrameTarget& target);
+  // The same with what is seen told, as pairs of drawn tree and triangle, rows from bottom to top: kNone, kGround.
+  FrameCost draw(const View& view, FrameTarget& target, std::span<const glm::uvec2> visible);
+  // Waits for the graphics card around each pass, so that costs tell times; slower.
+  void timePasses(bool on) { timed_ = on; }
+
+ private:
+  struct Programs;
+  FrameCost shade(const View& view, FrameTarget& target, FrameCost cost);
+  void bindFrame(const View& view, const FrameTarget& target);
+  float reach(const View& view) const;
+
+  const Context* context_;
+  StandData data_;
+  Buffer frame_;
+  std::unique_ptr<Programs> programs_;
+  bool timed_ = false;
+};
+
+}  // namespace sunfleck::gl
