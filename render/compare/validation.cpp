@@ -32,30 +32,40 @@ std::optional<double> categoryNoise(const ForwardResult& reference, std::span<co
 
 }  // namespace
 
-std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& bands) {
+std::vector<std::vector<TraceLight>> traceLightsOfSuns(const Scene& scene, const std::vector<int>& bands) {
   const SunAndSky shining = sunAndSky(scene);
   std::vector<std::size_t> lit;
   for (std::size_t i = 0; i < shining.suns.size(); ++i)
     if (shining.suns[i] != glm::vec3(0.f)) lit.push_back(i);
-  require(lit.size() <= 1, (scene.origin.empty() ? "" : scene.origin + ": ") + "number of suns that shine", lit.size(),
-          "1 for Monte Carlo (render takes several; light adds up: trace one after the other)");
-  const Sun overhead{.irradiance = glm::vec3(0.f)}, &sun = lit.empty() ? overhead : scene.suns[lit[0]];
-  std::vector<TraceLight> lights;
-  for (const int band : bands) {
-    TraceLight& light = lights.emplace_back(TraceLight{.sun = sun.light(),
-                                                       .ground_albedo = scene.ground_albedo[band],
-                                                       .sun_irradiance = lit.empty() ? 0.f : shining.suns[lit[0]][band],
-                                                       .sun_diameter = sun.diameter,
-                                                       .sky = shining.sky,
-                                                       .sky_band = band});
-    if (scene.ground_rpv) light.ground_rpv = (*scene.ground_rpv)[static_cast<std::size_t>(band)];
-    light.ground_texture = scene.ground_texture[static_cast<std::size_t>(band)];
-    for (const TreeKind& kind : scene.kinds)
-      light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
-    for (const SceneMedium& medium : scene.media)
-      light.of_media.push_back(medium.optics[static_cast<std::size_t>(band)]);
+  const Sun overhead{.irradiance = glm::vec3(0.f)};
+  std::vector<std::vector<TraceLight>> suns;
+  for (std::size_t i = 0; i < std::max<std::size_t>(lit.size(), 1); ++i) {
+    const Sun& sun = lit.empty() ? overhead : scene.suns[lit[i]];
+    std::vector<TraceLight>& lights = suns.emplace_back();
+    for (const int band : bands) {
+      TraceLight& light =
+          lights.emplace_back(TraceLight{.sun = sun.light(),
+                                         .ground_albedo = scene.ground_albedo[band],
+                                         .sun_irradiance = lit.empty() ? 0.f : shining.suns[lit[i]][band],
+                                         .sun_diameter = sun.diameter,
+                                         .sky = i == 0 ? shining.sky : nullptr,
+                                         .sky_band = band});
+      if (scene.ground_rpv) light.ground_rpv = (*scene.ground_rpv)[static_cast<std::size_t>(band)];
+      light.ground_texture = scene.ground_texture[static_cast<std::size_t>(band)];
+      for (const TreeKind& kind : scene.kinds)
+        light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
+      for (const SceneMedium& medium : scene.media)
+        light.of_media.push_back(medium.optics[static_cast<std::size_t>(band)]);
+    }
   }
-  return lights;
+  return suns;
+}
+
+std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& bands) {
+  std::vector<std::vector<TraceLight>> suns = traceLightsOfSuns(scene, bands);
+  require(suns.size() == 1, (scene.origin.empty() ? "" : scene.origin + ": ") + "number of suns that shine",
+          suns.size(), "1 for Monte Carlo (render takes several; light adds up: trace one after the other)");
+  return std::move(suns.front());
 }
 
 TraceLight traceLight(const Scene& scene, int band) {

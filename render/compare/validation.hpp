@@ -49,6 +49,8 @@ struct Validation {
 // sunAndSky() does.
 std::vector<TraceLight> traceLights(const Scene& scene, const std::vector<int>& bands);
 TraceLight traceLight(const Scene& scene, int band);  // the same in one
+// The same for each sun that shines, whose light adds up: the sky is with the first. At least one, if a dark one.
+std::vector<std::vector<TraceLight>> traceLightsOfSuns(const Scene& scene, const std::vector<int>& bands);
 
 std::string kindOf(const Scene& scene);  // "single tree", "16 trees" or "periodic"
 std::string labelOf(Model model);        // "SS", "SPP", "SPPG"

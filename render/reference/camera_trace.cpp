@@ -106,6 +106,10 @@ struct CameraJob::Parts {
     return tiles() * bands.size() + 2 * (number * bands.size() + static_cast<std::size_t>(band));
   }
 
+  std::uint64_t pathsOf(std::uint64_t tile_number) const {  // of a unit
+    return static_cast<std::uint64_t>(tile(tile_number).pixels()) * static_cast<std::uint64_t>(samples_per_unit);
+  }
+  void setPixels(CameraResult& result, const TraceSums& sums, std::uint64_t tile_number, int band) const;
   CameraResult result(const TraceSums& sums, int band) const;
   std::vector<double> wanted(double target, const TraceSums& sums) const;  // units of each tile, see unitsFor
 
@@ -202,6 +206,19 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
   });
 }
 
+void CameraJob::Parts::setPixels(CameraResult& result, const TraceSums& sums, std::uint64_t number, int band) const {
+  const Tile of = tile(number);
+  for (int y = of.top; y < of.bottom; ++y)
+    for (int x = of.left; x < of.right; ++x) {
+      const Estimate radiance = sums.estimate(pixel(x, y, band), number);
+      const std::size_t at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.width) + static_cast<std::size_t>(x);
+      result.radiance.values[2 * at] = static_cast<float>(radiance.value);
+      result.radiance.values[2 * at + 1] = static_cast<float>(sums.estimate(pixel(x, y, band) + 1, number).value);
+      result.standard_error.values[at] = static_cast<float>(radiance.standard_error);
+    }
+}
+
 CameraResult CameraJob::Parts::result(const TraceSums& sums, int band) const {
   CameraResult result;
   result.radiance = {.width = rays.width, .height = rays.height, .channels = {"Y", "single.Y"}, .values = {}};
@@ -213,25 +230,20 @@ CameraResult CameraJob::Parts::result(const TraceSums& sums, int band) const {
   for (std::uint64_t number = 0; number < tiles(); ++number) {
     const std::uint64_t units = sums.units(number);
     if (units == 0) continue;
-    const Tile of = tile(number);
-    const double weight = of.pixels();
+    const double weight = tile(number).pixels();
     const Estimate mean = sums.estimate(tileMean(number, band), number);
     pixels_met += weight;
     sum += weight * mean.value;
     variance += std::pow(weight * mean.standard_error, 2);
-    result.paths += units * static_cast<std::uint64_t>(of.pixels()) * static_cast<std::uint64_t>(samples_per_unit);
-    for (int y = of.top; y < of.bottom; ++y)
-      for (int x = of.left; x < of.right; ++x) {
-        const Estimate radiance = sums.estimate(pixel(x, y, band), number);
-        const std::size_t at =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.width) + static_cast<std::size_t>(x);
-        result.radiance.values[2 * at] = static_cast<float>(radiance.value);
-        result.radiance.values[2 * at + 1] = static_cast<float>(sums.estimate(pixel(x, y, band) + 1, number).value);
-        result.standard_error.values[at] = static_cast<float>(radiance.standard_error);
-      }
+    result.paths += units * pathsOf(number);
+    setPixels(result, sums, number, band);
   }
   if (pixels_met > 0.) result.mean = {sum / pixels_met, std::sqrt(variance) / pixels_met};
   return result;
+}
+
+std::uint64_t CameraJob::pathsOf(std::uint64_t unit) const {
+  return parts_->pathsOf(unit % groups());
 }
 
 std::vector<CameraResult> CameraJob::results(const TraceSums& sums) const {
@@ -239,6 +251,11 @@ std::vector<CameraResult> CameraJob::results(const TraceSums& sums) const {
   for (int band = 0; band < static_cast<int>(parts_->bands.size()); ++band)
     results.push_back(parts_->result(sums, band));
   return results;
+}
+
+void CameraJob::refresh(std::vector<CameraResult>& results, const TraceSums& sums, std::uint64_t tile) const {
+  for (std::size_t band = 0; band < results.size(); ++band)
+    parts_->setPixels(results[band], sums, tile, static_cast<int>(band));
 }
 
 // With v the sum over a tile's pixels of the variance that a unit leaves, n units of each tile leave sum v / n. For the

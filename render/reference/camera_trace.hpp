@@ -58,8 +58,11 @@ class CameraJob final : public TraceJob {
   TraceIdentity identity() const override;
   void trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, const Stopped& stopped) const override;
 
-  std::uint64_t unitsOf(std::uint64_t samples) const;              // that add so many samples to each pixel
+  std::uint64_t unitsOf(std::uint64_t samples) const;  // that add so many samples to each pixel
+  std::uint64_t pathsOf(std::uint64_t unit) const;
   std::vector<CameraResult> results(const TraceSums& sums) const;  // of each band
+  // Brings the pixels of a tile up to date in earlier results; their means and paths stay.
+  void refresh(std::vector<CameraResult>& results, const TraceSums& sums, std::uint64_t tile) const;
   // What brings the root mean square standard error of the pixels, relative to the mean of the picture, to `target` in
   // each band, in steps: missing units of `seed`, more of them for the tiles that are noisier. None when it is there,
   // or at `most` units of each tile.
