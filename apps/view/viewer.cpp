@@ -12,7 +12,6 @@
 #include "core/require.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
-#include "render/scene_writer.hpp"
 
 namespace sunfleck::view {
 namespace {
@@ -84,6 +83,7 @@ bool Viewer::frame() {
     report_.sent_ms = 1e3 * sending.seconds();
     report_.sent_bytes = sent.meshes + sent.maps + sent.trees + sent.cells + sent.sky;
     stand_ = result->made.revision;
+    drawn_trees_ = result->made.scene.stand.trees.size();
     session_.release(*result);
   }
   if (input_.size != glm::ivec2(0)) {
@@ -202,9 +202,8 @@ void Viewer::saveExr(const std::filesystem::path& file) {
 }
 
 void Viewer::saveScene(const std::filesystem::path& file) const {
-  Scene scene = session_.document().scene;
-  scene.camera = session_.camera;
-  writeScene(file, scene);
+  (void)file;
+  throw InvalidInput("not yet");
 }
 
 }  // namespace sunfleck::view

@@ -98,6 +98,7 @@ class Viewer {
   ProgressivePicture a_, b_;
   std::optional<gl::FrameTarget> probe_target_;  // of one pixel
   std::uint64_t stand_ = 0;                      // which the renderer holds; 0: none
+  std::size_t drawn_trees_ = 0;                  // of that stand
   ReferencePicture reference_;
   ImageTexture reference_texture_;
   Image reference_image_;

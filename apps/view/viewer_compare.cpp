@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apps/view/viewer.hpp"
+#include "render/gl/detail/frame_data.hpp"
 
 namespace sunfleck::view {
 namespace {
@@ -125,14 +126,14 @@ Probe Viewer::probeAt(glm::vec2 place) {
   probe.multiple = read(gl::Layer::multiple);
   probe.sky = read(gl::Layer::sky);
   const std::vector<std::uint32_t> ids = probe_target_->readIds();
-  const auto seen = renderer_.seen({ids[0], ids[1], ids[2], ids[3]});
   const Scene& scene = session_.document().scene;
-  if (seen.ground) probe.what = "ground";
-  if (!seen.tree || *seen.tree >= scene.stand.trees.size()) return probe;
-  probe.tree = seen.tree;
-  const std::string& kind = scene.kindOf(scene.stand.trees[*seen.tree]).name;
-  probe.what = seen.leaf ? fmt::format("{}, leaf {}", kind, *seen.leaf + 1) : kind + ", wood";
-  if (!seen.leaf) return probe;
+  if (ids[0] == gl::detail::kGround) probe.what = "ground";
+  if (ids[0] >= gl::detail::kGround || scene.stand.trees.size() != drawn_trees_) return probe;
+  probe.tree = ids[0] % drawn_trees_;  // copies of a periodic stand follow one another
+  const std::string& kind = scene.kindOf(scene.stand.trees[*probe.tree]).name;
+  const bool is_leaf = ids[3] != ~0u;
+  probe.what = is_leaf ? fmt::format("{}, leaf {}", kind, ids[3] + 1) : kind + ", wood";
+  if (!is_leaf) return probe;
   const glm::vec4 foliage = read(gl::Layer::foliage);
   probe.depth = foliage.x;
   probe.thickness = foliage.x + foliage.y + 1.f;
