@@ -1,71 +1,126 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
-#include <vector>
+#include <ctime>
+#include <memory>
+#include <string>
 
-#include "grid/deep_opacity_map.hpp"
-#include "plants/random_leaves.hpp"
 #include "render/gl/context.hpp"
-#include "render/gl/tree_renderer.hpp"
+#include "render/gl/stand_picture.hpp"
+#include "render/gl/stand_renderer.hpp"
+#include "render/scene_file.hpp"
 
 namespace {
 
 using namespace sunfleck;
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kDetail = 4.f;  // pixels of a leaf below which fewer and larger ones are drawn
 
-Scene sceneOf(TreeMesh mesh) {
+// A stand that is ready to be drawn, from somewhat above. G is what it is.
+struct Ready {
   Scene scene;
-  scene.kinds[0].mesh = std::make_shared<TreeMesh>(std::move(mesh));
-  scene.camera = Camera{.elevation = 35.f * kPi / 180.f, .azimuth = 20.f * kPi / 180.f, .half_width = 1.7f};
-  return scene;
+  StandGeometry geometry;
+  std::unique_ptr<gl::Context> context = std::make_unique<gl::Context>();
+  std::unique_ptr<gl::StandRenderer> renderer = std::make_unique<gl::StandRenderer>(*context);
+  gl::View view;
+
+  explicit Ready(const std::string& name) : scene(readScene(name)) {
+    scene.ground_albedo = glm::vec3(0.16f);
+    prepare();
+  }
+  void prepare() {
+    geometry.update(scene, {.sky_light = false});
+    renderer->update(gl::drawnStand(scene, geometry));
+    Camera camera = kOverview;
+    camera.elevation = 0.5f;
+    view.camera = showingAll(scene, camera);
+  }
+};
+
+// `rows` x `rows` cherries, each as far from the next as in the built-in stands.
+Ready& cherries(int rows) {
+  static std::array<std::unique_ptr<Ready>, 33> all;
+  std::unique_ptr<Ready>& ready = all[static_cast<std::size_t>(rows)];
+  if (!ready) {
+    ready = std::make_unique<Ready>(rows == 4 ? "cherry16" : rows == 8 ? "cherry64" : "cherry1");
+    if (rows > 8) {
+      const glm::vec2 period = touchingPeriod(ready->scene);
+      ready->scene.stand.trees.clear();
+      for (int i = 0; i < rows * rows; ++i)
+        ready->scene.stand.trees.push_back({.position = {period * glm::vec2(i % rows, i / rows), 0.f}});
+      ready->prepare();
+    }
+  }
+  return *ready;
 }
 
-gl::SunMap arraysOf(const DeepOpacityMap& map) {
-  return {.axes = map.axes(),
-          .origin = map.inMap(glm::vec3(0.f)),
-          .corner = map.corner(),
-          .pixel_size = map.pixelSize(),
-          .size = map.size(),
-          .first = map.first(),
-          .crossings = map.crossings(),
-          .wood_depth = map.woodDepth()};
-}
-
-double meanRadiance(const Image& image) {
+double meanRadiance(const gl::FrameTarget& target) {
+  const std::vector<float> values = target.read(gl::Layer::total);
   double sum = 0.;
-  for (std::size_t i = 0; i < image.values.size(); i += image.channels.size())
-    sum += static_cast<double>(image.values[i]);
-  return sum / (image.width * image.height);
+  for (std::size_t i = 0; i < values.size(); i += 4) sum += static_cast<double>(values[i]);
+  return 4. * sum / static_cast<double>(values.size());
 }
 
-// One picture of 512 x 512 pixels and 4 samples each, from the camera to floats in memory. G is 1 throughout: its value
-// does not change the time.
-void picture(benchmark::State& state, Model model) {
-  const Scene scene = sceneOf(randomCrown({}, 1));
-  const DeepOpacityMap map(*scene.kinds[0].mesh, scene.sun().light(), 512);
-  const gl::Context context;
-  const std::vector<float> ones(16 * 16 * 16, 1.f);
-  const gl::TreeRenderer renderer(
-      context, scene, arraysOf(map),
-      {.low = glm::vec3(-1.6f), .cell_size = 0.2f, .size = glm::ivec3(16), .values = {ones}});
-  // A crown like this one has, by Monte Carlo, a mean radiance of .0208; SS shows under a half of it, and SPP a sixth
-  // too much.
-  const double mean = meanRadiance(renderer.picture(*scene.camera, model));
-  const double expected = model == Model::ss ? 0.0094 : 0.0243;
-  if (std::abs(mean / expected - 1.) > 0.05) {
+// Frames of 512 x 512 pixels, one sample each, by all models in turn, so that what else the machine does falls on all
+// alike. The time is that of a frame by SPPG; counters tell the passes and the frames of the other models by that of SS.
+void frame(benchmark::State& state, int rows, float piece_pixels) {
+  Ready& ready = cherries(rows);
+  gl::FrameTarget target({ready.view.camera.width, ready.view.camera.height});
+  ready.view.piece_pixels = piece_pixels;
+  ready.renderer->timePasses(true);
+  const auto draw = [&](Model model) {
+    ready.view.model = model;
+    return ready.renderer->draw(ready.view, target);
+  };
+  for (const Model model : kModels) draw(model);
+  // Leaves of albedo .95 send more than light scattered once, and no more than falls on them.
+  draw(Model::ss);
+  const double single = meanRadiance(target);
+  draw(Model::sppg);
+  const double all = meanRadiance(target);
+  if (!(single > 0.01 && all > 1.1 * single && all < 0.32)) {
     state.SkipWithError("wrong answer");
     return;
   }
-  for (auto _ : state) benchmark::DoNotOptimize(renderer.picture(*scene.camera, model).values.data());
-  state.SetLabel(context.renderer());
-  state.SetItemsProcessed(state.iterations());
+  std::array<double, kModels.size()> seconds{};
+  double visible = 0.;
+  gl::FrameCost cost;
+  const std::clock_t start = std::clock();
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kModels.size(); ++i) {
+      cost = draw(kModels[i]);
+      seconds[i] += cost.visible_seconds + cost.shading_seconds;
+      visible += cost.visible_seconds / kModels.size();
+    }
+    state.SetIterationTime(cost.visible_seconds + cost.shading_seconds);
+  }
+  const auto frames = static_cast<double>(state.iterations());
+  // Of all threads and models: what a busy machine tells more truly than the time.
+  state.counters["cpu_ms"] = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / frames / kModels.size();
+  state.counters["visible_ms"] = 1e3 * visible / frames;
+  state.counters["ss_ms"] = 1e3 * seconds[0] / frames;
+  state.counters["sppg/ss"] = seconds[2] / seconds[0];
+  state.counters["nstreamg/ss"] = seconds[3] / seconds[0];
+  state.counters["triangles"] = static_cast<double>(cost.triangles);
+  state.SetLabel(ready.context->renderer());
 }
 
-BENCHMARK_CAPTURE(picture, ss, Model::ss)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
-BENCHMARK_CAPTURE(picture, spp, Model::spp)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
-BENCHMARK_CAPTURE(picture, sppg, Model::sppg)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK_CAPTURE(frame, cherry1, 1, kDetail)->Unit(benchmark::kMillisecond)->UseManualTime();
+BENCHMARK_CAPTURE(frame, cherry16, 4, kDetail)->Unit(benchmark::kMillisecond)->UseManualTime();
+BENCHMARK_CAPTURE(frame, cherry16_full, 4, 0.f)->Unit(benchmark::kMillisecond)->UseManualTime();
+BENCHMARK_CAPTURE(frame, cherry64, 8, kDetail)->Unit(benchmark::kMillisecond)->UseManualTime();
 
 }  // namespace
+
+// Stands of 1,024 trees take seconds to prepare: they are measured when asked for, by --benchmark_filter=frame/cherry1024.
+int main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (std::string(argv[i]).find("cherry1024") != std::string::npos)
+      benchmark::RegisterBenchmark("frame/cherry1024", [](benchmark::State& state) { frame(state, 32, kDetail); })
+          ->Unit(benchmark::kMillisecond)
+          ->UseManualTime();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -17,8 +17,8 @@
 #include "render/gl/context.hpp"
 #include "render/gl/program.hpp"
 #include "render/gl/shader_text.hpp"
-#include "render/gl/tree_picture.hpp"
-#include "render/gl/tree_renderer.hpp"
+#include "render/gl/stand_picture.hpp"
+#include "render/gl/stand_renderer.hpp"
 #include "spp/slab.hpp"
 
 namespace {
@@ -43,7 +43,7 @@ struct Rectangles {
   std::vector<std::uint32_t> first{0};
   std::vector<Crossing> crossings;
   std::vector<float> wood_depth;
-  gl::SunMap map;
+  gl::LightMap map;
 
   // `things` from top to bottom; the map covers -2 .. 2 along x and y.
   explicit Rectangles(const std::vector<Rectangle>& things, int resolution = 16) {
@@ -93,10 +93,35 @@ Camera cameraFrom(float elevation_degrees, float half_width = 0.5f, int size = 4
   return {.elevation = elevation_degrees * kPi / 180.f, .half_width = half_width, .width = size, .height = size};
 }
 
-Image picture(const Scene& scene, const gl::SunMap& map, const Camera& camera, Model model,
-              const gl::CompensationCells& cells = {}) {
+// G of the cells of each tree.
+struct Compensation {
+  gl::DrawnCells cells;
+  std::vector<std::span<const float>> values;
+};
+
+gl::DrawnStand standOf(const Scene& scene, const gl::LightMap& map, const Compensation& compensation = {}) {
+  gl::DrawnStand stand{.lights = {{.along = map.axes.along}},
+                       .kinds = {{.tree = scene.kinds[0], .cells = compensation.cells, .maps = {map}}},
+                       .trees = {},
+                       .ground_albedo = scene.ground_albedo};
+  for (std::size_t tree = 0; tree < scene.stand.trees.size(); ++tree) {
+    gl::DrawnTree& drawn = stand.trees.emplace_back();
+    drawn.position = scene.stand.trees[tree].position;
+    if (!compensation.values.empty()) drawn.compensation[0].values = compensation.values[tree];
+  }
+  return stand;
+}
+
+Image picture(const gl::DrawnStand& stand, const Camera& camera, const gl::PictureEffort& effort) {
   const gl::Context context;
-  return gl::TreeRenderer(context, scene, map, cells).picture(camera, model);
+  gl::StandRenderer renderer(context);
+  renderer.update(stand);
+  return gl::standPicture(context, renderer, camera, effort);
+}
+
+Image picture(const Scene& scene, const gl::LightMap& map, const Camera& camera, Model model,
+              const Compensation& compensation = {}) {
+  return picture(standOf(scene, map, compensation), camera, {.model = model});
 }
 
 constexpr Rectangle kWide{{-1.f, -1.f}, {1.f, 1.f}, 1.f};
@@ -192,9 +217,9 @@ TEST(R3_TreePicture, OfALeafInShadow) {
   const Camera camera = cameraFrom(-90.f);
   for (const bool as_stand : {false, true}) {
     const Scene scene = as_stand ? trees : two.scene();
-    const gl::SunMap& map = as_stand ? one.map : two.map;
-    const gl::CompensationCells cells{
-        .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {scene.stand.trees.size(), quarter}};
+    const gl::LightMap& map = as_stand ? one.map : two.map;
+    const Compensation cells{
+        .cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)}, .values = {scene.stand.trees.size(), quarter}};
     expectRadiance(picture(scene, map, camera, Model::ss), 2, 2, glm::vec3(0.f), 0.f);
     for (const float compensation : {1.f, 0.25f}) {
       const Image image = picture(scene, map, camera, compensation == 1.f ? Model::spp : Model::sppg, cells);
@@ -227,8 +252,8 @@ TEST(R3_TreePicture, ReadsTheCellsOfEachTree) {
   Scene scene = two.scene();
   scene.stand.trees.push_back({.position = {10.f, 0.f, 0.f}});
   const std::vector<float> none(8, 0.f), all(8, 1.f);
-  const gl::CompensationCells cells{
-      .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {none, all}};
+  const Compensation cells{
+        .cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)}, .values = {none, all}};
   Camera camera = cameraFrom(-90.f);
   expectRadiance(picture(scene, two.map, camera, Model::sppg, cells), 2, 2, glm::vec3(0.f), 0.f);
   camera.target.x = 10.f;
@@ -297,8 +322,8 @@ TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
 
   // G is 1/2 at the height of the leaf, which sends the light down, and 0 at the ground's.
   const std::vector<float> half_above{0.f, 0.f, 0.f, 0.f, 0.5f, 0.5f, 0.5f, 0.5f};
-  const gl::CompensationCells cells{
-      .low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2), .values = {half_above}};
+  const Compensation cells{
+        .cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)}, .values = {half_above}};
   const Image sppg = picture(scene, tree.map, camera, Model::sppg, cells);
   expectRadiance(sppg, shadow.x, shadow.y, 0.5f * scene.ground_albedo * passed / kPi, kShading);
 
@@ -317,22 +342,22 @@ TEST(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
     Scene scene = tree.scene();
     scene.suns[0].zenith = 0.25f * kPi;
     scene.suns[0].azimuth = azimuth;
-    scene.camera = cameraFrom(90.f, 0.1f, 2);
-    const DeepOpacityMap map(*scene.kinds[0].mesh, scene.sun().light(), 64);
-    const CellGrid cells{
-        .low = glm::vec3(-3.f), .cell_size = 2.f, .size = glm::ivec3(3), .slot = std::vector<std::uint32_t>(27)};
+    Camera camera = cameraFrom(90.f, 0.1f, 2);
+    const DeepOpacityMap of_tree(*scene.kinds[0].mesh, scene.sun().light(), 64);
+    const gl::LightMap map = gl::lightMap(of_tree);
     const std::vector<float> quarter(27, 0.25f);
-    const gl::ShadingData data{.sun = &map, .cells = &cells, .compensation = {quarter}};
+    const Compensation cells{.cells = {.low = glm::vec3(-3.f), .cell_size = 2.f, .size = glm::ivec3(3)},
+                             .values = {quarter}};
 
     const float cosine = std::cos(scene.suns[0].zenith);
-    expectRadiance(gl::treePicture(scene, data, Model::ss), 1, 1,
+    expectRadiance(picture(scene, map, camera, Model::ss), 1, 1,
                    cosine * perBand(scene, [](const LeafOptics& o) { return o.reflectance / kPi; }), kRounding);
-    scene.camera->target = {aside, 0.f};
-    expectRadiance(gl::treePicture(scene, data, Model::ss), 1, 1, glm::vec3(0.f), 0.f);
+    camera.target = {aside, 0.f};
+    expectRadiance(picture(scene, map, camera, Model::ss), 1, 1, glm::vec3(0.f), 0.f);
     const glm::vec3 expected = perBand(scene, [&](const LeafOptics& o) {
       return 0.25f * spp::leafRadiance(cosine, 0.f, cosine, diffuse(1.f, 2.f, o), o.reflectance, o.transmittance);
     });
-    expectRadiance(gl::treePicture(scene, data, Model::sppg), 1, 1, expected, kShading);
+    expectRadiance(picture(scene, map, camera, Model::sppg, cells), 1, 1, expected, kShading);
   }
 }
 
@@ -357,19 +382,13 @@ TEST(R3_TreePicture, HasNoSeams) {
   for (int x = 0; x < 1100; ++x) ASSERT_EQ(image.values[image.at(x, 1, 3)], x < 550 ? 1.f : 0.f) << x;
 }
 
-// (R3) Check that a rotated tree and a camera that sees nothing are refused by one line.
-TEST(R3_TreePicture, RefusesWhatItCannotDraw) {
+// (R3) Check that a camera that sees nothing is refused.
+TEST(R3_TreePicture, RefusesACameraThatSeesNothing) {
   const Rectangles leaf({kWide});
-  Scene scene = leaf.scene();
-  scene.camera = cameraFrom(90.f);
-  scene.camera->half_width = 0.f;
-  EXPECT_THROW(gl::treePicture(scene, {}, Model::ss), InvalidInput);
-  scene.camera = cameraFrom(90.f, 1.f, 0);
-  EXPECT_THROW(gl::treePicture(scene, {}, Model::ss), InvalidInput);
-  scene.camera = cameraFrom(90.f);
-  EXPECT_THROW(gl::treePicture(scene, {}, Model::ss), std::invalid_argument);  // no map
-  scene.stand.trees[0].rotation = 1.f;
-  EXPECT_THROW(gl::treePicture(scene, {}, Model::ss), InvalidInput);
+  Camera camera = cameraFrom(90.f);
+  camera.half_width = 0.f;
+  EXPECT_THROW(picture(leaf.scene(), leaf.map, camera, Model::ss), InvalidInput);
+  EXPECT_THROW(picture(leaf.scene(), leaf.map, cameraFrom(90.f, 1.f, 0), Model::ss), InvalidInput);
 }
 
 }  // namespace

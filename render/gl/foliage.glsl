@@ -72,8 +72,8 @@ Foliage foliageOfTree(MapFrame map, vec3 at, uint own, float wood_bias) {
 //   place      from `stands` [m]
 //   stands     where the tree of the place stands, in the stand's own period [m]
 //   tree, own  that tree and the leaf the place lies on, which does not stand in its own light; kNone, kNoLeaf for none
-//   wood_bias  how far a place may lie behind wood and count as its surface, for 0 of 1: cosine; y: metres more
-Foliage foliageAt(uint light, vec3 place, vec3 stands, uint tree, uint own, float wood_bias) {
+//   wood_bias  how far a place may lie behind wood and count as its surface: x [side of a pixel] and y [m]
+Foliage foliageAt(uint light, vec3 place, vec3 stands, uint tree, uint own, vec2 wood_bias) {
   Foliage sum = Foliage(0.0, 0.0, 1.0);
   uvec2 casters = castersAt(light, place + stands);
   for (uint c = casters.x; c < casters.y; ++c) {
@@ -82,7 +82,7 @@ Foliage foliageAt(uint light, vec3 place, vec3 stands, uint tree, uint own, floa
     MapFrame map = map_frames[4u * trees[caster.tree].kind.x + light];
     bool same = caster.tree == tree && displacement == vec3(0.0);
     Foliage of_tree = foliageOfTree(map, inLight(light, place - displacement) + map.origin.xyz, same ? own : kNoLeaf,
-                                    wood_bias * map.origin.w);
+                                    wood_bias.x * map.origin.w + wood_bias.y);
     sum.before += of_tree.before;
     sum.beyond += of_tree.beyond;
     sum.visible *= of_tree.visible;

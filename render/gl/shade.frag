@@ -8,7 +8,7 @@
 #include "render/gl/shading.glsl"
 
 layout(binding = 6) uniform usampler2D visible;
-layout(binding = 7) uniform samplerBuffer triangles;  // two rows for each: see tree_levels.hpp
+layout(binding = 7) uniform usamplerBuffer triangles;  // two texels of bits for each: see tree_levels.hpp
 layout(binding = 8) uniform sampler2D sky_radiance;   // rows from the zenith down [1/sr]
 
 layout(location = 0) out vec4 total;  // rgb: radiance; a: coverage by trees and ground
@@ -21,6 +21,8 @@ layout(location = 5) out vec4 geometry;  // xyz: normal; w: distance along the m
 layout(location = 6) out vec4 foliage_of_light;  // n+, n-, visible, G
 layout(location = 7) out uvec4 ids;              // drawn tree, triangle, kind, leaf
 #endif
+
+const uint kThinWood = kNoLeaf - 1u;
 
 struct Sight {
   vec3 from;
@@ -48,7 +50,8 @@ void shadeTree(uvec2 id, Sight look) {
   uint tree = id.x % counts.y;
   uint kind = trees[tree].kind.x;
   int triangle = 2 * int(kind_frames[kind].cell_count.w + id.y);
-  vec4 plane = texelFetch(triangles, triangle), of_leaf = texelFetch(triangles, triangle + 1);
+  vec4 plane = uintBitsToFloat(texelFetch(triangles, triangle));
+  uvec4 of_piece = texelFetch(triangles, triangle + 1);
   float enlargement = length(plane.xyz);
   vec3 normal = plane.xyz / enlargement;
   vec3 from = look.from - stands_here;
@@ -56,14 +59,16 @@ void shadeTree(uvec2 id, Sight look) {
   vec3 place = from + away * look.along;
   if (dot(normal, look.along) > 0.0) normal = -normal;
 
-  uint leaf = floatBitsToUint(of_leaf.w);
-  bool wood = leaf == kNoLeaf;
-  // The light is that of the true leaf, however enlarged it is drawn.
-  vec3 lit = wood ? place : of_leaf.xyz + (place - of_leaf.xyz) / enlargement;
+  bool wood = of_piece.w >= kThinWood;
+  uint leaf = wood ? kNoLeaf : of_piece.w;
+  vec3 middle = uintBitsToFloat(of_piece.xyz);
+  float error = of_piece.w == kNoLeaf ? middle.x : 0.0;
+  // The light is that of the true leaf or twig, however enlarged it is drawn.
+  vec3 lit = of_piece.w == kNoLeaf ? place : middle + (place - middle) / enlargement;
   Surface surface = wood ? woodSurface(kind, tree, normal, -look.along) : leafSurface(kind, tree, leaf, normal, -look.along);
   for (uint light = 0u; light < counts.x; ++light) {
     float bias = woodBias(wood ? dot(normal, light_frames[light].travel.xyz) : 1.0);
-    Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, bias);
+    Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, vec2(bias, error));
     // A leaf is itself a part of the slab's thickness.
     float thickness = foliage.before + foliage.beyond + (wood ? 0.0 : 1.0);
     float compensation = NEEDS_COMPENSATION ? compensationAt(lit, tree, light) : 1.0;
@@ -115,7 +120,7 @@ float shadeGround(Sight look) {
   vec3 here = place;
   if (period.x > 0.0) here.xy -= floor((here.xy - period.zw) / period.xy) * period.xy;
   for (uint light = 0u; light < counts.x; ++light) {
-    Foliage foliage = foliageAt(light, here, vec3(0.0), kNone, kNoLeaf, 1.0);
+    Foliage foliage = foliageAt(light, here, vec3(0.0), kNone, kNoLeaf, vec2(1.0, 0.0));
     LastLeaf last = lastLeaf(light, here);
     float compensation =
         NEEDS_COMPENSATION && last.tree != kNone ? compensationAt(last.place, last.tree, light) : 1.0;

@@ -47,7 +47,7 @@ LightBox rectangleOf(const LightMap& map, const glm::vec3& position) {
 }  // namespace
 
 StandData::StandData()
-    : triangles_(BufferTexture::Texel::rgba32f, "the trees' triangles take"),
+    : triangles_(BufferTexture::Texel::rgba32ui, "the trees' triangles take"),
       light_cells_(BufferTexture::Texel::r32ui, "the lists of trees in the light take"),
       light_casters_(BufferTexture::Texel::rgba32ui, "the lists of trees in the light take") {}
 

@@ -91,7 +91,7 @@ Image standPicture(const Context& context, StandRenderer& renderer, const Camera
   const glm::ivec2 tile = glm::min(glm::ivec2(kTile), picture);
   const glm::ivec2 tiles = (picture + tile - 1) / tile;
   FrameTarget target(tile, layers.size() > 1);
-  View view{.camera = camera, .model = effort.model, .pixels_per_leaf = effort.pixels_per_leaf};
+  View view{.camera = camera, .model = effort.model, .piece_pixels = effort.piece_pixels};
   const double frames = static_cast<double>(tiles.x * tiles.y) * effort.samples;
   int frame = 0;
   for (int y = 0; y < tiles.y; ++y)

@@ -15,7 +15,7 @@ namespace sunfleck::gl {
 struct PictureEffort {
   Model model = Model::sppg;
   int samples = 4;              // for each pixel, > 0
-  float pixels_per_leaf = 0.f;  // see View
+  float piece_pixels = 0.f;  // see View
   std::vector<Layer> layers;    // beside the total
 };
 

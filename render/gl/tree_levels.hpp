@@ -18,33 +18,37 @@ struct Cluster {
 
 // Leaves or wood in some degree of detail.
 struct Level {
+  float piece_area = 0.f;         // that smaller pieces were enlarged to; 0: all is drawn as it is [m^2]
   std::vector<Cluster> clusters;  // one after the other in the index list
-  float enlargement = 1.f;        // of a leaf's length, so that those left have the area of all [1]
-  float error = 0.f;              // how far a surface of wood may lie from the full tree's [m]
   std::uint32_t firstIndex() const { return clusters.empty() ? 0 : clusters.front().first_index; }
   std::uint32_t endIndex() const { return clusters.empty() ? 0 : clusters.back().end_index; }
 };
 
-// What shading reads of a triangle: two rows of four numbers.
+// What shading reads of a triangle.
 struct TriangleData {
-  // The plane that it lies in, unit normal times the leaf's enlargement; w: distance of the plane from the origin along
-  // the unit normal [m].
+  // The plane that it lies in: unit normal, times the enlargement of the piece that it is part of; w: distance of the
+  // plane from the origin along the unit normal [m].
   glm::vec4 plane{0.f};
-  // xyz: the middle of the leaf, about which it was enlarged; of wood, x: how far from the full tree's surface it may
-  // lie [m]. w: the bits of the leaf's number, or of kNoLeaf for wood.
-  glm::vec4 leaf{0.f};
+  // The middle of the piece, about which it was enlarged; where `leaf` is kNoLeaf, x: how far the wood may lie from the
+  // full tree's [m].
+  glm::vec3 middle{0.f};
+  std::uint32_t leaf = kNoLeaf;
+  static constexpr std::uint32_t kNoLeaf = ~0u, kThinWood = ~0u - 1;  // kThinWood: a piece of a twig
 };
+static_assert(sizeof(TriangleData) == 32);
 
-// (R25) A tree as it is drawn, from all of its triangles to few. Levels of leaves are nested: a random order, the same
-// each time, of which each level keeps the first half of the one before, enlarged (Cook et al. 2007). Triangle i is the
-// one whose last corner is vertex i: the first are those of the mesh, leaves before wood, as they stand there.
+// (R25) A tree as it is drawn, from all of its triangles to few. Each level draws a part of the small pieces, leaves and
+// bits of twigs, and these enlarged, so that area is kept: a piece of area a is there if its rank, a random number that
+// is the same each time, is below a / A, and then has the area A of the level (Cook et al. 2007). So levels are nested.
+// Wood that is not thin has its vertices joined within a distance that grows with the level (Rossignac & Borrel 1993).
+// Triangle i is the one whose last corner is vertex i: the first are those of the mesh, leaves before wood, as they
+// stand there.
 struct TreeLevels {
-  std::vector<glm::vec3> vertices;       // in the prototype's frame [m]
-  std::vector<std::uint32_t> indices;    // three for each triangle, of each level
-  std::vector<TriangleData> triangles;   // of all levels
-  std::vector<Level> leaves, wood;       // from fine to coarse, at least one
-  Bounds box;                            // of all levels [m]
-  float leaf_area = 0.f;                 // mean of a leaf in full detail, one side [m^2]
+  std::vector<glm::vec3> vertices;      // in the prototype's frame [m]
+  std::vector<std::uint32_t> indices;   // three for each triangle, of each level
+  std::vector<TriangleData> triangles;  // of all levels
+  std::vector<Level> leaves, wood;      // from fine to coarse, at least one
+  Bounds box;                           // of all levels [m]
 };
 TreeLevels treeLevels(const TreeMesh& mesh);
 

@@ -18,7 +18,7 @@ struct View {
   glm::ivec2 low{0};            // lower left pixel of the target, in the camera's picture from its lower left
   glm::vec2 offset{0.f};        // of the sample in each pixel from its middle [pixel]
   bool accumulate = false;      // add to the radiances that the target holds
-  float pixels_per_leaf = 0.f;  // smaller leaves are drawn fewer and larger (R25); 0: all as they are
+  float piece_pixels = 0.f;  // leaves and twigs are drawn fewer and larger, up to so many pixels (R25); 0: as they are
   std::uint32_t layer_light = 0;  // whose foliage is told in layers
 };
 

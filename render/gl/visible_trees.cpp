@@ -9,8 +9,6 @@
 namespace sunfleck::gl {
 namespace {
 
-constexpr float kWoodError = 0.5f;  // [pixel]
-
 enum class Seen { no, partly, wholly };
 
 Seen seen(const std::array<glm::vec4, 4>& sides, const Bounds& box, const glm::vec3& displacement) {
@@ -30,17 +28,12 @@ float distanceTo(const Bounds& box, const glm::vec3& point) {
   return glm::length(glm::max(glm::max(box.low - point, point - box.high), glm::vec3(0.f)));
 }
 
-std::size_t leafLevel(const TreeLevels& levels, float pixels_per_metre, float pixels_per_leaf) {
-  if (pixels_per_leaf <= 0.f) return 0;
-  const float pixels = 0.5f * levels.leaf_area * pixels_per_metre * pixels_per_metre;  // of a leaf turned anyhow
-  const float halvings = std::ceil(std::log2(pixels_per_leaf / std::max(pixels, 1e-20f)));
-  return static_cast<std::size_t>(std::clamp(halvings, 0.f, static_cast<float>(levels.leaves.size() - 1)));
-}
-
-std::size_t woodLevel(const TreeLevels& levels, float pixels_per_metre, float pixels_per_leaf) {
+// The coarsest level whose enlarged pieces, turned anyhow, cover no more than so many pixels.
+std::size_t levelFor(const std::vector<Level>& levels, float pixels_per_metre, float most_pixels) {
   std::size_t level = 0;
-  if (pixels_per_leaf > 0.f)
-    while (level + 1 < levels.wood.size() && levels.wood[level + 1].error * pixels_per_metre < kWoodError) ++level;
+  while (level + 1 < levels.size() &&
+         0.5f * levels[level + 1].piece_area * pixels_per_metre * pixels_per_metre <= most_pixels)
+    ++level;
   return level;
 }
 
@@ -61,8 +54,8 @@ VisibleTrees visibleTrees(const TreeLevels& levels, std::span<const detail::Draw
     const Seen how = seen(sides, levels.box, tree.position);
     if (how == Seen::no) continue;
     const float pixels = pixelsPerMetre(view.camera, perspective ? distanceTo(levels.box, eye - tree.position) : 1.f);
-    chosen.push_back({&tree, leafLevel(levels, pixels, view.pixels_per_leaf),
-                      woodLevel(levels, pixels, view.pixels_per_leaf), how == Seen::wholly});
+    chosen.push_back({&tree, levelFor(levels.leaves, pixels, view.piece_pixels),
+                      levelFor(levels.wood, pixels, view.piece_pixels), how == Seen::wholly});
   }
 
   VisibleTrees visible;
