@@ -24,7 +24,7 @@ struct RenderOptions {
   CameraOptions camera;
   GeometryEffort effort{.light_resolution = 1024};
   std::string model = "sppg", output;
-  float exposure = kExposure;
+  DisplayOptions display;
   bool stats = false;
 };
 
@@ -51,7 +51,7 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   }();
   const double shaded = seconds() - prepared;
   if (interrupted()) throw std::runtime_error("interrupted");
-  writeImage(options.output, image, options.exposure);
+  writeImage(options.output, image, options.display.display());
   if (run.json) {
     nlohmann::ordered_json result{{"output", options.output}, {"model", options.model},      {"width", image.width},
                                   {"height", image.height},   {"prepare_seconds", prepared}, {"shade_seconds", shaded}};
@@ -79,8 +79,7 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
                    "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); nstreamg: a better "
                    "slab with G-factor")
       ->check(CLI::IsMember({"ss", "spp", "sppg", "nstreamg"}));
-  command->add_option("--exposure", render->exposure, "Factor from radiance to brightness in a .png (default 3)")
-      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
+  addDisplayOptions(*command, render->display);
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
       ->transform(wholeNumberIn(1., 4096., "a whole number, 1 to 4096"));
   command->add_flag("--stats", render->stats, "Tell what was computed, reused and skipped, and what it took");

@@ -162,7 +162,7 @@ class TraceRun {
     if (section.sums.units() == 0) return;
     const CameraResult& result = results.front();
     if (!options_.picture.empty())
-      writeImage(options_.picture, options_.all_bands ? colours(results) : result.radiance, options_.exposure);
+      writeImage(options_.picture, options_.all_bands ? colours(results) : result.radiance, options_.display.display());
     json_["image_mean"] = result.mean.value;
     json_["image_mean_se"] = result.mean.standard_error;
     json_["image_paths"] = result.paths;

@@ -2,15 +2,13 @@
 
 #include <glm/geometric.hpp>
 
+#include "apps/display_options.hpp"
 #include "core/image.hpp"
 #include "render/leaf_models.hpp"
 #include "render/scene.hpp"
 #include "render/stand_geometry.hpp"
 
 namespace sunfleck::apps {
-
-// Brings a leaf in full sun to about the middle of the display's range.
-inline constexpr float kExposure = 3.f;
 
 // Lets a picture stand on a ground that shows its shadows: one that reflects a sixth of the light.
 void showGround(Scene& scene);

@@ -51,8 +51,7 @@ void addTraceOptions(CLI::App& command, TraceOptions& options) {
   command.add_flag("--only-picture", options.only_picture, "Trace the picture alone")->excludes("--leaves");
   command.add_flag("--by-eye", options.by_eye,
                    "Trace the picture by paths from the camera alone, also where paths of light are less noisy");
-  command.add_option("--exposure", options.exposure, "Factor from radiance to brightness in a .png (default 3)")
-      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
+  addDisplayOptions(command, options.display);
   CLI::Option* all_bands =
       command.add_flag("--all-bands", options.all_bands, "Trace the three bands of the scene on the same paths")
           ->excludes("--band");

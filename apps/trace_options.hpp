@@ -21,7 +21,7 @@ struct TraceOptions {
   BrfOptions brf;
   int samples = 64;
   int band = 0;
-  float exposure = kExposure;
+  DisplayOptions display;
   bool by_eye = false, all_bands = false, without_wood = false, only_picture = false;
   std::string leaves, picture, cells, spectrum, spectrum_out;
   double cell = 0.25;             // side [m]

@@ -23,18 +23,6 @@ std::string lowered(std::string text) {
   return text;
 }
 
-// IEC 61966-2-1: linear light [1] to the code value of an 8-bit sRGB picture. What is not a number shows as black.
-std::uint8_t sRgbCode(float linear) {
-  const float light = linear > 0.f ? std::min(linear, 1.f) : 0.f;
-  const float encoded = light <= 0.0031308f ? 12.92f * light : 1.055f * std::pow(light, 1.f / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(255.f * encoded));
-}
-
-// The other way, from a code value over the largest.
-float linearLight(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
 // The channels that a screen shows: R, G, B where there are all three, else the first as grey.
 std::vector<std::size_t> shownChannels(const Image& image) {
   std::vector<std::size_t> shown;
@@ -81,11 +69,11 @@ void requirePictureName(const fs::path& file) {
   requireWritable(file);
 }
 
-void writeImage(const fs::path& file, const Image& image, float exposure) {
+void writeImage(const fs::path& file, const Image& image, const Display& display) {
   assert(image.values.size() == image.at(0, image.height, 0));
   requirePictureName(file);
   if (lowered(file.extension().string()) == ".png")
-    writeWhole(file, pngBytes(image, exposure));
+    writeWhole(file, pngBytes(image, display));
   else
     writeWhole(file, [&](const fs::path& temporary) {
       try {
@@ -127,19 +115,20 @@ Image readImage(const fs::path& file, ImageValues values) {
   for (std::size_t i = 0; i < image.values.size(); ++i) {
     float& value = image.values[i];
     if (!std::isfinite(value)) refuse("it holds a value that is not a finite number");
-    if (decode && i % channels != alpha) value = linearLight(value);
+    if (decode && i % channels != alpha) value = tone_mapping::srgbLight(value);
   }
   return image;
 }
 
-std::string pngBytes(const Image& image, float exposure) {
+std::string pngBytes(const Image& image, const Display& display) {
   const std::vector<std::size_t> shown = shownChannels(image);
   std::vector<std::uint8_t> codes;
   codes.reserve(image.values.size());
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
       for (const std::size_t channel : shown)
-        codes.push_back(sRgbCode(exposure * image.values[image.at(x, y, channel)]));
+        codes.push_back(
+            static_cast<std::uint8_t>(std::lround(255.f * display.code(image.values[image.at(x, y, channel)]))));
 
   try {
     return detail::imageCodec().png(image.width, image.height, static_cast<int>(shown.size()), codes);

@@ -6,13 +6,14 @@
 #include <string>
 
 #include "core/image.hpp"
+#include "render/tone_mapping.hpp"
 
 namespace sunfleck {
 
 // Writes a picture by the file's extension, whole or not at all: .exr keeps linear radiances as 32-bit floats; .png
-// shows them at `exposure` (radiance is multiplied by it, then encoded as sRGB, 8 bits): channels R, G and B, or else
-// the first channel as grey. Throws InvalidInput on another extension or a place that cannot be written.
-void writeImage(const std::filesystem::path& file, const Image& image, float exposure);
+// shows them as the display says, 8 bits: channels R, G and B, or else the first channel as grey. Throws InvalidInput
+// on another extension or a place that cannot be written.
+void writeImage(const std::filesystem::path& file, const Image& image, const Display& display);
 
 // Writes a .png of 8-bit colours as they stand, red, green and blue, rows from the top; whole or not at all. Throws
 // InvalidInput on another extension or a place that cannot be written.
@@ -33,6 +34,6 @@ enum class ImageValues { as_they_stand, linear };
 Image readImage(const std::filesystem::path& file, ImageValues values);
 
 // The same PNG as bytes, for embedding in a report.
-std::string pngBytes(const Image& image, float exposure);
+std::string pngBytes(const Image& image, const Display& display);
 
 }  // namespace sunfleck

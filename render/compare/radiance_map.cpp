@@ -9,10 +9,11 @@
 
 #include "core/image.hpp"
 #include "render/compare/base64.hpp"
-#include "render/compare/detail/colour_ramp.hpp"
 #include "render/compare/detail/radial_scale.hpp"
 #include "render/compare/detail/svg_text.hpp"
+#include "render/false_colour.hpp"
 #include "render/image_file.hpp"
+#include "render/tone_mapping.hpp"
 
 namespace sunfleck {
 namespace {
@@ -35,19 +36,15 @@ double valueAt(const RadianceMap& map, int hemisphere, double zenith_share, doub
          di * ((1. - dj) * value(i0 + 1, j0) + dj * value(i0 + 1, j0 + 1));
 }
 
-// The light that a PNG writes as this sRGB code (IEC 61966-2-1).
-float lightOf(double code) {
-  return static_cast<float>(code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4));
-}
-
 std::string picture(const RadianceMap& map, int hemisphere, const RadialScale& scale) {
   Image image{.width = kPixels, .height = kPixels, .channels = {"R", "G", "B"}, .values = {}};
   for (int y = 0; y < kPixels; ++y)
     for (int x = 0; x < kPixels; ++x) {
       const double right = 2. * (x + 0.5) / kPixels - 1., up = 1. - 2. * (y + 0.5) / kPixels;
       const double azimuth = std::abs(std::atan2(up, right)) / std::numbers::pi;
-      for (const double code : rampColour(scale.at(valueAt(map, hemisphere, std::hypot(right, up), azimuth))))
-        image.values.push_back(lightOf(code));
+      const glm::vec3 code =
+          falseColour(static_cast<float>(scale.at(valueAt(map, hemisphere, std::hypot(right, up), azimuth))));
+      for (int band = 0; band < 3; ++band) image.values.push_back(tone_mapping::srgbLight(code[band]));
     }
   return "data:image/png;base64," + base64(pngBytes(image, 1.f));
 }
@@ -66,9 +63,9 @@ std::string disc(const RadianceMap& map, int hemisphere, const RadialScale& scal
 std::string colourBar(const RadialScale& scale) {
   std::string svg = R"(<linearGradient id="ramp" x1="0" x2="0" y1="1" y2="0">)";
   for (int i = 0; i <= 16; ++i) {
-    const auto colour = rampColour(i / 16.);
-    svg += fmt::format(R"svg(<stop offset="{}" stop-color="rgb({:.0f},{:.0f},{:.0f})"/>)svg", i / 16., 255. * colour[0],
-                       255. * colour[1], 255. * colour[2]);
+    const glm::vec3 colour = 255.f * falseColour(static_cast<float>(i) / 16.f);
+    svg += fmt::format(R"svg(<stop offset="{}" stop-color="rgb({:.0f},{:.0f},{:.0f})"/>)svg", i / 16., colour.x,
+                       colour.y, colour.z);
   }
   svg += fmt::format(R"svg(</linearGradient><rect x="{}" y="{}" width="{}" height="{}" fill="url(#ramp)"/>)svg",
                      kBarLeft, kBarTop, kBarWidth, kBarBottom - kBarTop);

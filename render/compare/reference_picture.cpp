@@ -177,7 +177,7 @@ void ReferencePicture::trace(Run& run) {
     std::vector<int> bands;
     std::vector<TraceLight> lit;
     for (const TraceLight& light : lights)
-      if (light.sun_irradiance > 0.f || light.sky) {
+      if (light.sun_irradiance > 0.f || (light.sky && light.sky->irradiance()[light.sky_band] > 0.)) {
         bands.push_back(light.sky_band);
         lit.push_back(light);
       }
