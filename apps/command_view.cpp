@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "apps/commands.hpp"
+#include "apps/display_options.hpp"
 #include "apps/pictures.hpp"
 #include "apps/scene_options.hpp"
 #include "apps/terminal.hpp"
@@ -18,7 +19,7 @@ struct ViewOptions {
   std::string model = "sppg", script;
   std::vector<int> window{1440, 900};
   std::optional<int> frames;
-  float exposure = kExposure;
+  DisplayOptions display;
   bool offscreen = false;
 };
 
@@ -36,7 +37,7 @@ int runView(const ViewOptions& options) {
   };
   viewer.size = {options.window[0], options.window[1]};
   viewer.offscreen = options.offscreen;
-  viewer.look.exposure = options.exposure;
+  viewer.look.display = options.display.display();
   if (!options.script.empty()) {
     viewer.script = view::readScript(options.script);
     viewer.script_name = options.script;
@@ -59,8 +60,7 @@ void addView(CLI::App& app, RunOptions& options, int& status) {
   for (const Model model : kModels) models.push_back(nameOf(model));
   command->add_option("--model", view->model, "Scattering model to begin with (default sppg)")
       ->check(CLI::IsMember(models));
-  command->add_option("--exposure", view->exposure, "Factor from radiance to brightness (default 3)")
-      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
+  addDisplayOptions(*command, view->display);
   const std::string group = "Window";
   command->add_option("--window", view->window, "Width and height of the window, in pixels (default 1440 900)")
       ->expected(2)

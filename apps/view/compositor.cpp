@@ -13,12 +13,6 @@ namespace {
 
 constexpr int kColours = 256;
 
-constexpr const char* kTone = R"(
-vec3 toneMapped(vec3 radiance, float exposure, int tone) {
-  vec3 c = clamp(radiance * exposure, 0.0, 1.0);
-  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
-}
-)";
 constexpr const char* kWholeScreen = R"(#version 450 core
 void main() {
   gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
@@ -39,18 +33,16 @@ layout(location = 5) uniform ivec2 layers;        // of A and B: 0 radiance, 1 d
 layout(location = 6) uniform float difference_scale;
 layout(location = 0) out vec4 colour;
 
-// TONE_MAPPING
-
-// From dark blue over green to yellow.
-vec3 ramp(float x) {
-  x = clamp(x, 0.0, 1.0);
-  return clamp(vec3(0.27 + x * (-0.30 + 1.05 * x), 0.01 + x * (1.35 - 0.45 * x), 0.33 + x * (0.95 - 1.15 * x)), 0.0, 1.0);
-}
+// SHARED
 
 vec3 shown(vec4 value, int layer, float scale) {
-  if (layer == 0) return toneMapped(max(value.rgb * scale, vec3(0.0)), exposure, tone);
-  const float depth = layer == 1 ? value.x : layer == 2 ? value.x + value.y + 1.0 : 20.0 * value.w;
-  return value == vec4(0.0) ? vec3(0.0) : ramp(depth / 20.0);
+  if (layer == 0) {
+    vec3 c;
+    for (int band = 0; band < 3; ++band) c[band] = srgbCode(shownLight(tone, exposure * scale * value[band]));
+    return c;
+  }
+  const float share = layer == 1 ? value.x / 20.0 : layer == 2 ? (value.x + value.y + 1.0) / 20.0 : value.w;
+  return value == vec4(0.0) ? vec3(0.0) : falseColour(share);
 }
 
 void main() {
@@ -68,9 +60,11 @@ void main() {
 )";
 
 std::string compositeText() {
-  const std::string mark = "// TONE_MAPPING";
-  std::string text = kComposite;
-  return text.replace(text.find(mark), mark.size(), kTone);
+  const std::string mark = "// SHARED";
+  std::string text = kComposite, shared;
+  for (const char* file : {"render/gl/prelude.glsl", "render/tone_mapping.glsl", "render/false_colour.glsl"})
+    shared += gl::shaderText(file);
+  return text.replace(text.find(mark), mark.size(), shared);
 }
 
 int kindOf(Layer layer) {
@@ -135,8 +129,8 @@ void Compositor::draw(const Canvas& canvas, const Shown& a, const std::optional<
   const bool comparable = look.comparison != Comparison::difference || b.has_value();
   glUniform1i(0, comparable ? static_cast<int>(look.comparison) : 0);
   glUniform1f(1, std::round(look.wipe * static_cast<float>(canvas.size().x)));
-  glUniform1f(2, look.exposure);
-  glUniform1i(3, toneNumber(look.tone));
+  glUniform1f(2, look.display.exposure);
+  glUniform1i(3, static_cast<int>(look.display.curve));
   glUniform2f(4, a.scale, second.scale);
   glUniform2i(5, kindOf(a.layer), kindOf(second.layer));
   glUniform1f(6, difference_scale);

@@ -70,11 +70,23 @@ void Panels::drawCompare(Session& session, const FrameReport& report) {
   }
   if (look.comparison == Comparison::off) return;
   heading("Error");
-  if (report.relative_rms)
-    ImGui::Text("relative RMS of A against B: %s", shareText(*report.relative_rms).c_str());
-  else
+  if (!report.error) {
     ImGui::TextDisabled("waits for both pictures");
-  tip("Root mean square of A - B over all pixels and bands, by the root mean square of B");
+  } else if (beginRows("error")) {
+    const PictureError& error = *report.error;
+    row("relative RMS", shareText(error.rms));
+    tip("Root mean square of A - B over pixels and bands, by that of B, where there is something to be seen");
+    if (!look.other) {
+      row("noise alone", shareText(error.noise));
+      tip("What of it is Monte Carlo's noise");
+      row("without noise",
+          fmt::format("{} \u00b1 {}", shareText(error.without_noise), shareText(error.standard_error)));
+      tip("The model's own error, with its standard error");
+    }
+    row("bias", fmt::format("{:+.2f} %", 100. * error.bias));
+    tip("Of the sum of all light");
+    ImGui::EndTable();
+  }
   if (look.other) return;
   heading("Monte Carlo");
   if (!report.reference_failure.empty()) {

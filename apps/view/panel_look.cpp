@@ -89,14 +89,14 @@ void Panels::drawModel(Session& session) {
     ImGui::EndCombo();
   }
   tip("All light, or that of one scattering, or depth, thickness and G of what is seen");
-  ImGui::SliderFloat("exposure", &look.exposure, 0.05f, 100.f, "%.2f", ImGuiSliderFlags_Logarithmic);
+  ImGui::SliderFloat("exposure", &look.display.exposure, 0.05f, 100.f, "%.2f", ImGuiSliderFlags_Logarithmic);
   tip("Factor from radiance to brightness");
-  if (ImGui::BeginCombo("tone", look.tone.c_str())) {
-    for (const std::string& tone : toneNames())
-      if (ImGui::Selectable(tone.c_str(), tone == look.tone)) look.tone = tone;
+  if (ImGui::BeginCombo("tone", nameOf(look.display.curve).c_str())) {
+    for (const ToneCurve tone : kTones)
+      if (ImGui::Selectable(nameOf(tone).c_str(), tone == look.display.curve)) look.display.curve = tone;
     ImGui::EndCombo();
   }
-  tip("How radiances become brightness");
+  tip("clamp: light as it is; filmic: shadows a little deeper, highlights that fade");
   ImGui::SliderInt("samples", &look.samples, 1, 64);
   tip("Per pixel, drawn one after the other while nothing moves");
   ImGui::Checkbox("fewer leaves far away", &look.fewer_leaves);

@@ -81,7 +81,7 @@ void Panels::drawTrees(Session& session) {
     tip("No tree stands nearer to another than this [m]");
   }
 
-  heading(fmt::format("{} trees", scene.stand.trees.size()).c_str());
+  heading(scene.stand.trees.size() == 1 ? "1 tree" : fmt::format("{} trees", scene.stand.trees.size()).c_str());
   if (const auto selected = session.document().selected) {
     const Placement& tree = scene.stand.trees[*selected];
     ImGui::Text("tree %zu, %s", *selected + 1, scene.kindOf(tree).name.c_str());

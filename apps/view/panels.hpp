@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/view/session.hpp"
+#include "render/compare/picture_difference.hpp"
 
 namespace sunfleck::view {
 
@@ -39,9 +40,8 @@ struct FrameReport {
   int samples = 0;       // in the picture shown
   std::string renderer;  // what OpenGL draws with
   std::optional<Probe> probe;
-  // Of B against A, both whole; none where there is nothing to compare.
-  std::optional<double> relative_rms;
-  float difference_scale = 0.f;  // that the colours tell [1/sr]
+  std::optional<PictureError> error;  // of A against B, both whole; none where there is nothing to compare
+  float difference_scale = 0.f;       // that the colours tell [1/sr]
   // Monte Carlo, where it is B.
   bool reference_runs = false, reference_finished = false;
   double reference_noise = 0., reference_seconds = 0., reference_done = 0.;

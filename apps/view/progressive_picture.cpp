@@ -3,7 +3,7 @@
 namespace sunfleck::view {
 namespace {
 
-constexpr float kPixelsPerLeaf = 4.f;  // smaller leaves are drawn fewer and larger
+constexpr float kPiecePixels = 2.f;  // leaves are drawn fewer and larger, up to this
 
 }  // namespace
 
@@ -21,7 +21,7 @@ bool ProgressivePicture::draw(gl::StandRenderer& renderer, const PictureKey& key
                          .model = key.model,
                          .offset = gl::sampleOffset(samples == 1 ? 0 : number + 1),
                          .accumulate = !anew,
-                         .pixels_per_leaf = key.fewer_leaves ? kPixelsPerLeaf : 0.f},
+                         .piece_pixels = key.fewer_leaves ? kPiecePixels : 0.f},
                         *target_);
   key_ = key;
   return true;

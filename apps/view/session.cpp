@@ -49,16 +49,8 @@ std::string nameOf(Layer layer) {
   return {};
 }
 
-const std::vector<std::string>& toneNames() {
-  static const std::vector<std::string> kNames{"linear"};
-  return kNames;
-}
-
-int toneNumber(const std::string& name) {
-  const auto found = std::ranges::find(toneNames(), name);
-  if (found == toneNames().end())
-    throw InvalidInput(fmt::format("tone = \"{}\": must be one of {}", name, fmt::join(toneNames(), ", ")));
-  return static_cast<int>(found - toneNames().begin());
+std::string nameOf(ToneCurve tone) {
+  return tone == ToneCurve::filmic ? "filmic" : "clamp";
 }
 
 Session::Session(std::string name, std::function<Document()> read)
@@ -95,7 +87,7 @@ void Session::advance() {
 
 void Session::edit(const SceneEdit& edit, std::uint64_t gesture) {
   history_->apply(edit, gesture);
-  say(nameOf(edit));
+  say("changed: " + nameOf(edit));
 }
 
 void Session::undo() {

@@ -10,6 +10,7 @@
 #include "apps/view/edit_history.hpp"
 #include "apps/view/navigation.hpp"
 #include "apps/view/stand_worker.hpp"
+#include "render/tone_mapping.hpp"
 
 namespace sunfleck::view {
 
@@ -19,18 +20,17 @@ inline constexpr std::array kLayers{Layer::total, Layer::direct, Layer::single, 
                                     Layer::sky,   Layer::depth,  Layer::thickness, Layer::compensation};
 std::string nameOf(Layer layer);
 
-const std::vector<std::string>& toneNames();
-int toneNumber(const std::string& name);  // throws InvalidInput on another
+inline constexpr std::array kTones{ToneCurve::clamp, ToneCurve::filmic};
+std::string nameOf(ToneCurve tone);
 
 enum class Comparison { off, wipe, flip, difference };
 
 struct Look {
   Navigation navigation = Navigation::orbit;
   Layer layer = Layer::total;
-  float exposure = 3.f;         // radiance to brightness, > 0
-  std::string tone = "linear";  // its curve
-  int samples = 16;             // per pixel, once nothing moves
-  bool fewer_leaves = true;     // where they are small (level of detail)
+  Display display{3.f};      // radiance to brightness
+  int samples = 16;          // per pixel, once nothing moves
+  bool fewer_leaves = true;  // where they are small (level of detail)
   Comparison comparison = Comparison::off;
   std::optional<Model> other;     // what B is; none: the reference
   float wipe = 0.5f;              // share of the width that shows A

@@ -38,7 +38,7 @@ Viewer::Viewer(const ViewerOptions& options)
       gui_(window_->scale()),
       session_(options.name, options.read),
       renderer_(*context_),
-      reference_(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)) {
+      tracing_(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)) {
   session_.look = options.look;
   session_.camera.width = session_.camera.height = 1;
   renderer_.timePasses(true);
@@ -55,6 +55,11 @@ bool Viewer::still() const {
                           (b_.done(session_.look.samples) && b_.key() == keyOf(*session_.look.other));
   return session_.upToDate() && !session_.work().busy && a_.done(session_.look.samples) &&
          a_.key() == keyOf(session_.document().model) && b_is_drawn && synthetic_.empty();
+}
+
+bool Viewer::settled() const {
+  constexpr int kTold = 2;  // frames after which the panels have told all
+  return still() && still_frames_ >= kTold;
 }
 
 bool Viewer::frame() {
@@ -100,6 +105,7 @@ bool Viewer::frame() {
       if (report_.frame_ms.size() > kTimes) report_.frame_ms.erase(report_.frame_ms.begin());
     }
   }
+  still_frames_ = still() ? still_frames_ + 1 : 0;
   serve(requests_);
   ++frame_count_;
   if (frames_left_ > 0) --frames_left_;
@@ -110,10 +116,10 @@ bool Viewer::frame() {
 Input Viewer::nextInput() {
   const bool scripted = next_step_ < options_.script.size() || options_.ends || options_.frames.has_value();
   double wait = 0.;
-  if (!scripted && session_.loaded() && still() && drag_ == Drag::none)
-    wait = kIdleWait;
-  else if (!session_.loaded() || (session_.work().busy && a_.done(session_.look.samples)))
+  if (!session_.loaded() || (session_.work().busy && a_.done(session_.look.samples)))
     wait = kBusyWait;
+  else if (settled() && drag_ == Drag::none)
+    wait = scripted ? kBusyWait : kIdleWait;
   Input input = window_->poll(wait);
   if (options_.offscreen && wait > 0.) std::this_thread::sleep_for(std::chrono::duration<double>(wait));
   if (!synthetic_.empty()) {

@@ -69,7 +69,8 @@ class Viewer {
   void serve(Requests& requests);
   PictureKey keyOf(Model model) const;
   Probe probeAt(glm::vec2 place);
-  bool still() const;
+  bool still() const;    // what is drawn is up to date and smooth
+  bool settled() const;  // and the panels tell of it
   void saveScreenshot(const std::filesystem::path& file) const;
   void saveWindow(const std::filesystem::path& file) const;
   void saveExr(const std::filesystem::path& file);
@@ -99,9 +100,9 @@ class Viewer {
   std::optional<gl::FrameTarget> probe_target_;  // of one pixel
   std::uint64_t stand_ = 0;                      // which the renderer holds; 0: none
   std::size_t drawn_trees_ = 0;                  // of that stand
-  ReferencePicture reference_;
+  ReferencePicture tracing_;
   ImageTexture reference_texture_;
-  Image reference_image_;
+  ReferencePicture::Snapshot reference_;       // the last one seen
   std::optional<ReferenceKey> reference_key_;  // that it runs for
   Elapsed reference_clock_;
   double looked_seconds_ = -1.;
@@ -118,6 +119,7 @@ class Viewer {
   int rested_ = 0;  // frames since the mouse moved
 
   std::size_t next_step_ = 0;
+  int still_frames_ = 0;
   int frames_left_ = 0;          // that a step waits for
   std::deque<Input> synthetic_;  // that a script asks for
   Input scripted_;               // mouse and keys as a script left them

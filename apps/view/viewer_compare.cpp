@@ -13,21 +13,14 @@ namespace {
 constexpr double kLookAgain = 0.25;      // at Monte Carlo [s]
 constexpr double kShareInScale = 0.995;  // of the pixels whose difference the colours tell
 
-// Red, green and blue of a picture, rows from bottom to top.
-std::vector<glm::vec3> radiancesOf(const Image& image) {
-  std::vector<glm::vec3> values;
-  for (int y = image.height; y-- > 0;)
-    for (int x = 0; x < image.width; ++x)
-      values.emplace_back(image.values[image.at(x, y, 0)], image.values[image.at(x, y, 1)],
-                          image.values[image.at(x, y, 2)]);
-  return values;
-}
-
-std::vector<glm::vec3> radiancesOf(const ProgressivePicture& picture) {
-  const std::vector<float> read = picture.target().read(gl::Layer::total);
-  std::vector<glm::vec3> values;
-  for (std::size_t i = 0; i < read.size(); i += 4) values.emplace_back(read[i], read[i + 1], read[i + 2]);
-  return values;
+Image imageOf(const ProgressivePicture& picture) {
+  const glm::ivec2 size = picture.target().size();
+  Image image{.width = size.x, .height = size.y, .channels = {"R", "G", "B", "A"}, .values = {}};
+  const std::vector<float> rows = picture.target().read(gl::Layer::total);  // from the bottom
+  const auto row = 4 * static_cast<std::ptrdiff_t>(size.x);
+  for (std::ptrdiff_t y = size.y; y-- > 0;)
+    image.values.insert(image.values.end(), rows.begin() + y * row, rows.begin() + (y + 1) * row);
+  return image;
 }
 
 }  // namespace
@@ -39,16 +32,16 @@ std::optional<Shown> Viewer::referenceShown() {
   if (reference_key_ != key) {
     reference_texture_.clear();  // it is of another picture
     compared_.reset();
-    report_.relative_rms.reset();
+    report_.error.reset();
     report_.reference_noise = report_.reference_done = report_.reference_seconds = 0.;
     report_.reference_runs = false;
     report_.reference_failure.clear();
-    if (reference_key_) reference_.cancel();
+    if (reference_key_) tracing_.cancel();
     reference_key_.reset();
     if (!settled || drag_ != Drag::none) return std::nullopt;
     Scene scene = document.scene;
     scene.camera = session_.camera;
-    reference_.start(scene, key.target);
+    tracing_.start(scene, key.target);
     reference_key_ = key;
     reference_clock_ = Elapsed();
     looked_seconds_ = -1.;
@@ -57,7 +50,7 @@ std::optional<Shown> Viewer::referenceShown() {
   const double now = reference_clock_.seconds();
   if (report_.reference_runs && now - looked_seconds_ >= kLookAgain) {
     looked_seconds_ = now;
-    const ReferencePicture::Snapshot seen = reference_.snapshot();
+    const ReferencePicture::Snapshot seen = tracing_.snapshot();
     report_.reference_runs = seen.running;
     report_.reference_seconds = now;
     report_.reference_failure = seen.failure;
@@ -68,7 +61,7 @@ std::optional<Shown> Viewer::referenceShown() {
     }
     if (seen.radiance.width == picture_.size().x && seen.radiance.height == picture_.size().y && seen.samples > 0.) {
       reference_texture_.set(seen.radiance);
-      reference_image_ = seen.radiance;
+      reference_ = seen;
       compared_.reset();
     }
   }
@@ -82,20 +75,12 @@ void Viewer::compare() {
   if (compared_ == std::pair(a, b)) return;
   const bool there = look.other ? b_.done(look.samples) && b_.key() == b : reference_texture_.shown().has_value();
   if (!a_.done(look.samples) || !(a_.key() == a) || !there) {
-    report_.relative_rms.reset();
+    report_.error.reset();
     return;
   }
-  const std::vector<glm::vec3> of_a = radiancesOf(a_),
-                               of_b = look.other ? radiancesOf(b_) : radiancesOf(reference_image_);
-  double error = 0., size = 0.;
-  std::vector<float> differences;
-  for (std::size_t i = 0; i < of_a.size(); ++i) {
-    const glm::dvec3 difference = glm::dvec3(of_a[i]) - glm::dvec3(of_b[i]);
-    error += glm::dot(difference, difference);
-    size += glm::dot(glm::dvec3(of_b[i]), glm::dvec3(of_b[i]));
-    differences.push_back(static_cast<float>(std::abs(difference.x + difference.y + difference.z) / 3.));
-  }
-  report_.relative_rms = size > 0. ? std::optional(std::sqrt(error / size)) : std::nullopt;
+  const Image of_a = imageOf(a_), of_b = look.other ? imageOf(b_) : reference_.radiance;
+  report_.error = pictureError(of_a, of_b, look.other ? nullptr : &reference_.standard_error);
+  std::vector<float> differences = differencePicture(of_a, of_b, Difference::absolute).values;
   const auto rank =
       differences.begin() + static_cast<std::ptrdiff_t>(kShareInScale * static_cast<double>(differences.size() - 1));
   std::nth_element(differences.begin(), rank, differences.end());

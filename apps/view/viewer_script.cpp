@@ -91,14 +91,15 @@ bool Viewer::blocked(const ScriptStep& step) {
     case Verb::probe:
     case Verb::exr:
     case Verb::wait_ready:
+    case Verb::window_screenshot:
     case Verb::expect_recomputed:
-      return !still();
+      return !settled();
     case Verb::wait_reference:
       if (session_.look.comparison == Comparison::off || session_.look.other)
         throw InvalidInput("wait reference: must follow compare with reference, and wipe, flip or difference");
       if (!report_.reference_failure.empty()) throw std::runtime_error(report_.reference_failure);
       session_.look.reference_noise = step.numbers[0];
-      return !still() || !report_.reference_finished || !report_.relative_rms;
+      return !settled() || !report_.reference_finished || !report_.error;
     default:
       return false;
   }
@@ -261,11 +262,10 @@ void Viewer::executeLook(const ScriptStep& step) {
       session_.goTo(step.texts[0]);
       break;
     case Verb::exposure:
-      look.exposure = number(step, 0);
+      look.display.exposure = number(step, 0);
       break;
     case Verb::tone:
-      toneNumber(step.texts[0]);
-      look.tone = step.texts[0];
+      look.display.curve = named(step.texts[0], kTones, "tone", [](ToneCurve t) { return nameOf(t); });
       break;
     case Verb::layer:
       look.layer = named(step.texts[0], kLayers, "layer", [](Layer l) { return nameOf(l); });
