@@ -14,10 +14,10 @@ vec3 inCells(vec3 place, uint kind, uint block) {
 
 float compensationAt(vec3 place, uint tree, uint light) {
   uvec4 of = trees[tree].kind;
-  return of.y == kNone ? 1.0 : texture(compensation_cells, inCells(place, of.x, of.y))[light];
+  return of.y == kNone ? 1.0 : texture(compensation_cells, inCells(place, kindOf(tree), of.y))[light];
 }
 
 vec3 skyLightAt(vec3 place, uint tree) {
   uvec4 of = trees[tree].kind;
-  return of.y == kNone ? vec3(0.0) : texture(sky_cells, inCells(place, of.x, of.y)).rgb;
+  return of.y == kNone ? vec3(0.0) : texture(sky_cells, inCells(place, kindOf(tree), of.y)).rgb;
 }

@@ -79,7 +79,7 @@ Foliage foliageAt(uint light, vec3 place, vec3 stands, uint tree, uint own, vec2
   for (uint c = casters.x; c < casters.y; ++c) {
     Caster caster = casterAt(c);
     vec3 displacement = caster.position - stands;
-    MapFrame map = map_frames[4u * trees[caster.tree].kind.x + light];
+    MapFrame map = map_frames[4u * kindOf(caster.tree) + light];
     bool same = caster.tree == tree && displacement == vec3(0.0);
     Foliage of_tree = foliageOfTree(map, inLight(light, place - displacement) + map.origin.xyz, same ? own : kNoLeaf,
                                     wood_bias.x * map.origin.w + wood_bias.y);

@@ -36,6 +36,16 @@ struct Drawn {
 };
 layout(std430, binding = 1) readonly buffer DrawnTrees { Drawn drawn[]; };
 
+// Where ONE_KIND and LIGHTS are told, compilers know what is the same for all pixels.
+#ifdef ONE_KIND
+uint kindOf(uint tree) { return 0u; }
+#else
+uint kindOf(uint tree) { return trees[tree].kind.x; }
+#endif
+#ifndef LIGHTS
+#define LIGHTS counts.x
+#endif
+
 // A kind of trees.
 struct KindFrame {
   vec4 cell_low;    // xyz: corner of its cells [m]; w: cells per metre

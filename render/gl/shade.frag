@@ -48,7 +48,7 @@ void addLight(Shaded shaded, uint light, Foliage foliage, float compensation) {
 void shadeTree(uvec2 id, Sight look) {
   vec3 stands_here = drawn[id.x].position;
   uint tree = id.x % counts.y;
-  uint kind = trees[tree].kind.x;
+  uint kind = kindOf(tree);
   int triangle = 2 * int(kind_frames[kind].cell_count.w + id.y);
   vec4 plane = uintBitsToFloat(texelFetch(triangles, triangle));
   uvec4 of_piece = texelFetch(triangles, triangle + 1);
@@ -66,7 +66,7 @@ void shadeTree(uvec2 id, Sight look) {
   // The light is that of the true leaf or twig, however enlarged it is drawn.
   vec3 lit = of_piece.w == kNoLeaf ? place : middle + (place - middle) / enlargement;
   Surface surface = wood ? woodSurface(kind, tree, normal, -look.along) : leafSurface(kind, tree, leaf, normal, -look.along);
-  for (uint light = 0u; light < counts.x; ++light) {
+  for (uint light = 0u; light < LIGHTS; ++light) {
     float bias = woodBias(wood ? dot(normal, light_frames[light].travel.xyz) : 1.0);
     Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, vec2(bias, error));
     // A leaf is itself a part of the slab's thickness.
@@ -95,7 +95,7 @@ LastLeaf lastLeaf(uint light, vec3 here) {
   uvec2 casters = castersAt(light, here);
   for (uint c = casters.x; c < casters.y; ++c) {
     Caster caster = casterAt(c);
-    MapFrame map = map_frames[4u * trees[caster.tree].kind.x + light];
+    MapFrame map = map_frames[4u * kindOf(caster.tree) + light];
     vec3 in_tree = inLight(light, here - caster.position) + map.origin.xyz;
     Nearest near = nearestPixels(map, in_tree);
     ivec2 pixel = near.pixel + ivec2(greaterThan(near.part, vec2(0.5)));
@@ -119,12 +119,12 @@ float shadeGround(Sight look) {
   if (from_centre >= 1.0 || (eye.w > 0.0 && away <= 0.0)) return 0.0;
   vec3 here = place;
   if (period.x > 0.0) here.xy -= floor((here.xy - period.zw) / period.xy) * period.xy;
-  for (uint light = 0u; light < counts.x; ++light) {
+  for (uint light = 0u; light < LIGHTS; ++light) {
     Foliage foliage = foliageAt(light, here, vec3(0.0), kNone, kNoLeaf, vec2(1.0, 0.0));
     LastLeaf last = lastLeaf(light, here);
     float compensation =
         NEEDS_COMPENSATION && last.tree != kNone ? compensationAt(last.place, last.tree, light) : 1.0;
-    uint kind = last.tree == kNone ? 0u : trees[last.tree].kind.x;
+    uint kind = last.tree == kNone ? 0u : kindOf(last.tree);
     Surface surface = opaqueSurface(kind, kNone, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), -look.along);
     addLight(shadeByLight(surface, foliage, foliage.before + foliage.beyond, compensation, light), light, foliage,
              compensation);

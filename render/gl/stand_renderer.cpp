@@ -68,17 +68,24 @@ struct StandRenderer::Programs {
   Program visible{shaderOf(Stage::vertex, "render/gl/visible.vert"),
                   shaderOf(Stage::fragment, "render/gl/visible.frag")};
   ObjectName<destroyArray> no_array{createdArray()};
-  std::map<std::pair<Model, bool>, Program> shading;
+  // What a shading program is made for.
+  struct Purpose {
+    Model model;
+    bool layers, one_kind, one_light;
+    auto operator<=>(const Purpose&) const = default;
+  };
+  std::map<Purpose, Program> shading;
   std::map<Model, ShadingBuffers> buffers;  // of the stand as it is
 
-  const Program& shadingBy(Model model, bool layers) {
-    const auto key = std::pair(model, layers);
-    auto found = shading.find(key);
+  const Program& shadingFor(const Purpose& purpose) {
+    auto found = shading.find(purpose);
     if (found == shading.end()) {
-      Shader shader = shadingShader(Stage::fragment, "render/gl/shade.frag", model);
-      define(shader, "NEEDS_COMPENSATION", needsCompensation(model) ? "true" : "false");
-      if (layers) define(shader, "LAYERS", "1");
-      found = shading.emplace(key, Program({shaderOf(Stage::vertex, "render/gl/screen.vert"), shader})).first;
+      Shader shader = shadingShader(Stage::fragment, "render/gl/shade.frag", purpose.model);
+      define(shader, "NEEDS_COMPENSATION", needsCompensation(purpose.model) ? "true" : "false");
+      if (purpose.layers) define(shader, "LAYERS", "1");
+      if (purpose.one_kind) define(shader, "ONE_KIND", "1");
+      if (purpose.one_light) define(shader, "LIGHTS", "1u");
+      found = shading.emplace(purpose, Program({shaderOf(Stage::vertex, "render/gl/screen.vert"), shader})).first;
     }
     return found->second;
   }
@@ -161,7 +168,12 @@ FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost 
     data_.bind();
     glBindTextureUnit(6, target.visible());
     programs_->buffersOf(view.model, data_).bind();
-    programs_->shadingBy(view.model, target.hasLayers()).use();
+    programs_
+        ->shadingFor({.model = view.model,
+                      .layers = target.hasLayers(),
+                      .one_kind = data_.kinds().size() == 1,
+                      .one_light = data_.lights().size() == 1})
+        .use();
     glBindVertexArray(programs_->no_array.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
   });
