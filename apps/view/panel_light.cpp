@@ -114,8 +114,8 @@ void Panels::drawSun(Session& session) {
   if (ImGui::TreeNode("By date and place")) {
     ImGui::InputText("date", &date);
     tip("Year-month-day, such as 2026-06-21");
-    ImGui::InputText("time UTC", &time);
-    tip("Hours:minutes, such as 12:00, in universal time");
+    ImGui::InputText("time", &time);
+    tip("Hours:minutes, such as 12:00, in universal time, or with the offset of a zone, such as 14:00+02:00");
     ImGui::DragFloat("latitude", &latitude, 0.1f, -90.f, 90.f, "%.2f\u00b0");
     tip("Degrees, north above 0");
     ImGui::DragFloat("longitude", &longitude, 0.1f, -180.f, 180.f, "%.2f\u00b0");

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "core/random.hpp"
 #include "core/require.hpp"
 #include "plants/species.hpp"
 #include "plants/weber_penn.hpp"
 #include "render/scene_file.hpp"
+#include "sky/solar_position.hpp"
 
 namespace sunfleck::view {
 
@@ -21,6 +23,7 @@ TreeKind readKind(const std::string& species_or_file, std::uint64_t seed) {
   TreeKind kind;
   kind.name = species_or_file;
   kind.source = fmt::format("species {}, seed {}", species_or_file, seed);
+  kind.recipe = {.species = species_or_file, .seed = seed, .file = {}, .rules = {}};
   kind.mesh = std::make_shared<const TreeMesh>(grow(species(species_or_file), seed));
   return kind;
 }
@@ -161,8 +164,14 @@ void Session::paint(glm::vec2 place, float radius, float spacing, std::uint32_t 
   if (!painted.empty()) edit(AddTrees{painted}, gesture);
 }
 
-void Session::turnSunByDate(std::size_t, const std::string&, const std::string&, double, double) {
-  throw InvalidInput("not yet");
+void Session::turnSunByDate(std::size_t sun, const std::string& date, const std::string& time, double latitude,
+                            double longitude) {
+  const SolarPosition at = solarPosition(utcMoment(date, time), glm::radians(latitude), glm::radians(longitude));
+  std::vector<Sun> suns = document().scene.suns;
+  require(sun < suns.size(), "sun", sun + 1, "one of the scene's suns");
+  suns[sun].zenith = static_cast<float>(at.zenith);
+  suns[sun].azimuth = static_cast<float>(at.azimuth);
+  edit(SetSuns{suns});
 }
 
 void Session::addKind(const std::string& species_or_file, std::uint64_t seed) {

@@ -12,6 +12,7 @@
 #include "core/require.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
+#include "render/scene_writer.hpp"
 
 namespace sunfleck::view {
 namespace {
@@ -208,8 +209,9 @@ void Viewer::saveExr(const std::filesystem::path& file) {
 }
 
 void Viewer::saveScene(const std::filesystem::path& file) const {
-  (void)file;
-  throw InvalidInput("not yet");
+  Scene scene = session_.document().scene;
+  scene.camera = session_.camera;
+  writeScene(file, scene);
 }
 
 }  // namespace sunfleck::view

@@ -75,6 +75,7 @@ void Viewer::advanceScript() {
     try {
       if (blocked(step)) return;
       execute(step);
+      still_frames_ = 0;
     } catch (const InvalidInput& e) {
       throw InvalidInput(where(e.what()));
     } catch (const std::exception& e) {
