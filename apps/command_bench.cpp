@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bench_directions.hpp"
+#include "apps/bench_pictures.hpp"
 #include "apps/bench_stand.hpp"
 #include "apps/commands.hpp"
 #include "apps/output_folder.hpp"
@@ -106,6 +107,14 @@ void addBench(CLI::App& app, RunOptions& options, int& status) {
   of_stand->add_option("--trees", *trees, "Trees of the largest stand, 16 to 50000 (default 1024; 10000 take 1.3 GB)")
       ->transform(wholeNumberIn(16., 5e4, "a whole number, 16 to 50000"));
   of_stand->callback([trees, folder, &options, &status] { status = runBenchStand(*trees, *folder, options); });
+
+  auto pictures = std::make_shared<PictureBenchOptions>();
+  CLI::App* of_pictures = addCommand(*bench, options, "pictures",
+                                     "Pictures by each model against pictures by Monte Carlo, with their errors");
+  folderOption(*of_pictures, "picture_bench.csv and a sheet of pictures for each scene");
+  addPictureBenchOptions(*of_pictures, *pictures);
+  of_pictures->callback(
+      [pictures, folder, &options, &status] { status = runBenchPictures(*pictures, *folder, options); });
 
   folderOption(*bench, "slab_bench.csv and slab_bench.svg");
   bench->require_subcommand(0, 1);

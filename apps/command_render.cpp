@@ -25,24 +25,48 @@ struct RenderOptions {
   GeometryEffort effort{.light_resolution = 1024};
   std::string model = "sppg", output;
   DisplayOptions display;
+  int samples = 4;
+  float detail = 0.f;
+  std::vector<std::string> layers;
   bool stats = false;
 };
 
+std::vector<gl::Layer> layersOf(const RenderOptions& options) {
+  if (options.layers.empty()) return {};
+  if (std::filesystem::path(options.output).extension() == ".png")
+    throw InvalidInput("--layers with " + options.output + ": must be left out, as only .exr keeps layers");
+  std::vector<gl::Layer> layers;
+  for (const gl::Layer layer : gl::kLayersBesideTotal)
+    if (std::ranges::find(options.layers, "all") != options.layers.end() ||
+        std::ranges::find(options.layers, gl::nameOf(layer)) != options.layers.end())
+      layers.push_back(layer);
+  return layers;
+}
+
+std::vector<std::string> layerNames() {
+  std::vector<std::string> names{"all"};
+  for (const gl::Layer layer : gl::kLayersBesideTotal) names.push_back(gl::nameOf(layer));
+  return names;
+}
+
 int runRender(const RenderOptions& options, const RunOptions& run) {
   requirePictureName(options.output);
+  const gl::PictureEffort effort{.model = *std::ranges::find(kModels, options.model, nameOf),
+                                 .samples = options.samples,
+                                 .piece_pixels = options.detail,
+                                 .layers = layersOf(options)};
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  const Model model = *std::ranges::find(kModels, options.model, nameOf);
   StandGeometry stand(options.effort);
-  stand.update(scene, needsOf(model), treesInPicture(scene, cameraOf(scene)),
+  stand.update(scene, needsOf(effort.model), treesInPicture(scene, cameraOf(scene)),
                terminalProgress("opacity maps and cells", run.quiet));
   const double prepared = seconds();
   const Image image = [&] {
     try {
-      return modelPicture(scene, stand, model, terminalProgress("drawing", run.quiet));
+      return gl::scenePicture(scene, stand, effort, terminalProgress("drawing", run.quiet));
     } catch (const gl::TooLarge& e) {
       const std::string what = e.what();
       const bool of_map = what.starts_with("the light's opacity map");
@@ -82,6 +106,19 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
   addDisplayOptions(*command, render->display);
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
       ->transform(wholeNumberIn(1., 4096., "a whole number, 1 to 4096"));
+  command->add_option("--samples", render->samples, "Frames averaged, each through other places of the pixels (default 4)")
+      ->transform(wholeNumberIn(1., 65536., "a whole number, 1 to 65536"));
+  command
+      ->add_option("--layers", render->layers,
+                   "Layers that an .exr holds beside the picture, by their names or all: direct, single, multiple, sky "
+                   "(parts of the picture), geometry (normal, depth), foliage (leaves before and beyond, visible sun, G), "
+                   "ids (tree, triangle, kind, leaf)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(layerNames()));
+  command
+      ->add_option("--detail", render->detail,
+                   "Draw fewer leaves and twigs, enlarged to at most so many pixels each; 0: all as they are (default)")
+      ->check(numberIn(0., 1e4, "in [0, 1e4] pixels"));
   command->add_flag("--stats", render->stats, "Tell what was computed, reused and skipped, and what it took");
   command->callback([render, &options, &status] { status = runRender(*render, options); });
 }

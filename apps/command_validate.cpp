@@ -63,12 +63,11 @@ std::string percent(const std::optional<double>& fraction, const char* sign = ""
 // Ours and the paper's Table 3. Its tree is a cherry too, but not this one.
 std::string table(std::span<const Validation> validations) {
   const Validation& first = validations.front();
-  const TreeMesh& mesh = *first.scene.kinds[0].mesh;
-  const std::size_t leaves = mesh.leaf_count, triangles = mesh.leaf_triangles.size();
+  const std::size_t leaves = first.leaves, triangles = first.leaf_triangles;
   std::string text =
       fmt::format("{}: {} {} ({} {}), {:.4g} m2, albedo {:.3g}, sun {:.3g} degrees from the zenith\n", first.scene.name,
                   leaves, leaves == 1 ? "leaf" : "leaves", triangles, triangles == 1 ? "triangle" : "triangles",
-                  first.leaf_area, first.optics().albedo(), first.scene.sun().zenith * 57.29578f);
+                  first.leaf_area, first.albedo(), first.scene.sun().zenith * 57.29578f);
   for (const Validation& v : validations) {
     text += fmt::format("\n{:<12} RMS error against Monte Carlo, mean depth {:.2f} in {:.2f}\n", kindOf(v.scene),
                         v.mean_depth, v.mean_thickness);
@@ -158,7 +157,10 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
     stand.update(scene, {}, std::nullopt, terminalProgress("opacity maps and cells", run.quiet));
     validations.push_back(
         validate(scene, stand, options.effort, terminalProgress("Monte Carlo, " + kindOf(scene), run.quiet)));
-    if (pictures.empty() && !options.no_pictures && !interrupted())
+    const bool plain = scene.kinds.size() == 1 && std::ranges::all_of(scene.stand.trees, [](const Placement& tree) {
+                         return tree.rotation == 0.f;
+                       });
+    if (plain && pictures.empty() && !options.no_pictures && !interrupted())
       pictures = picturesIfPossible(options, run, scene, stand);
   }
   if (validations.empty()) {

@@ -1,12 +1,11 @@
 #include "apps/pictures.hpp"
 
-#include "core/require.hpp"
 #include "render/gl/stand_picture.hpp"
 
 namespace sunfleck::apps {
 
-Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress) {
-  return gl::scenePicture(scene, stand, {.model = model}, progress);
+Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress, int samples) {
+  return gl::scenePicture(scene, stand, {.model = model, .samples = samples}, progress);
 }
 
 void showGround(Scene& scene) {

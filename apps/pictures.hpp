@@ -14,6 +14,8 @@ namespace sunfleck::apps {
 void showGround(Scene& scene);
 
 // The scene shaded by a model on the GPU; `stand` is up to date for it and the model.
-Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress = {});
+//   samples  of each pixel
+Image modelPicture(const Scene& scene, const StandGeometry& stand, Model model, const Progress& progress = {},
+                   int samples = 4);
 
 }  // namespace sunfleck::apps

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <glm/trigonometric.hpp>
 
 #include "core/require.hpp"
+#include "render/radians.hpp"
 #include "render/scene_file.hpp"
+#include "sky/solar_position.hpp"
 
 namespace sunfleck::apps {
 
@@ -28,6 +31,18 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
   command.add_option("--sun-azimuth", options.sun_azimuth_deg, "Where the sun stands, in degrees from +x towards +y")
       ->check(numberIn(-360., 360., "in [-360, 360] degrees"))
       ->group(group);
+  CLI::Option* date = command.add_option("--date", options.date,
+                                         "The sun where it stands at this date and time, UTC or with an offset, as in "
+                                         "2003-10-17T12:30-07:00; needs --place");
+  CLI::Option* place =
+      command
+          .add_option("--place", options.place,
+                      "Latitude and longitude of that sun, in degrees to the north and east; x is east, y north")
+          ->expected(2)
+          ->check(numberIn(-180., 180., "in [-180, 180] degrees"))
+          ->group(group)
+          ->needs(date);
+  date->group(group)->needs(place)->excludes("--sun-zenith")->excludes("--sun-azimuth");
   command
       .add_option("--period", options.period, "Repeat the stand without end on a rectangle with these sides, in metres")
       ->expected(2)
@@ -60,6 +75,19 @@ void requireMeshFor(const SceneOptions& options) {
   if (given) throw InvalidInput(fmt::format("{}: must be for a mesh file, not for {}", given, options.scene));
 }
 
+void placeSun(const SceneOptions& options, Sun& sun) {
+  const std::size_t middle = options.date.find_first_of("T ");
+  if (middle == std::string::npos)
+    throw InvalidInput("--date = \"" + options.date + "\": must be a date and a time, as in 2003-10-17T12:30-07:00");
+  const double latitude = (*options.place)[0], longitude = (*options.place)[1];
+  require(std::abs(latitude) <= 90., "--place: latitude", latitude, "in [-90, 90] degrees");
+  const SolarPosition stands =
+      solarPosition(utcMoment(options.date.substr(0, middle), options.date.substr(middle + 1), "--date: "),
+                    glm::radians(latitude), glm::radians(longitude));
+  sun.zenith = static_cast<float>(stands.zenith);
+  sun.azimuth = static_cast<float>(stands.azimuth);
+}
+
 }  // namespace
 
 Scene readScene(const SceneOptions& options, Media media) {
@@ -86,8 +114,9 @@ Scene readScene(const SceneOptions& options, Media media) {
     for (SceneMedium& medium : scene.media)
       if (!medium.particles)
         medium.optics.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
-  if (options.sun_zenith_deg) scene.suns.front().zenith = glm::radians(*options.sun_zenith_deg);
-  if (options.sun_azimuth_deg) scene.suns.front().azimuth = glm::radians(*options.sun_azimuth_deg);
+  if (options.sun_zenith_deg) scene.suns.front().zenith = radiansOf(*options.sun_zenith_deg);
+  if (options.sun_azimuth_deg) scene.suns.front().azimuth = radiansOf(*options.sun_azimuth_deg);
+  if (!options.date.empty()) placeSun(options, scene.suns.front());
   if (options.period) scene.stand.period = glm::vec2((*options.period)[0], (*options.period)[1]);
   intoOnePeriod(scene.stand);
   return scene;
@@ -126,9 +155,9 @@ void addCameraOptions(CLI::App& command, CameraOptions& options, const std::stri
 void apply(const CameraOptions& options, Scene& scene) {
   if (!options.given()) return;
   Camera camera = scene.camera.value_or(kOverview);
-  if (options.elevation_deg) camera.elevation = glm::radians(*options.elevation_deg);
-  if (options.azimuth_deg) camera.azimuth = glm::radians(*options.azimuth_deg);
-  if (options.field_of_view_deg) camera.field_of_view = glm::radians(*options.field_of_view_deg);
+  if (options.elevation_deg) camera.elevation = radiansOf(*options.elevation_deg);
+  if (options.azimuth_deg) camera.azimuth = radiansOf(*options.azimuth_deg);
+  if (options.field_of_view_deg) camera.field_of_view = radiansOf(*options.field_of_view_deg);
   if (options.size) {
     camera.width = (*options.size)[0];
     camera.height = (*options.size)[1];

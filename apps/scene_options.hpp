@@ -17,7 +17,9 @@ struct SceneOptions {
   float scale = 1.f;
   std::string up = "z";
   std::optional<float> albedo;  // reflectance = transmittance = albedo / 2 in all bands
-  std::optional<float> sun_zenith_deg, sun_azimuth_deg;
+  std::optional<double> sun_zenith_deg, sun_azimuth_deg;
+  std::string date;                          // and time, as in 2003-10-17T12:30:30-07:00
+  std::optional<std::vector<double>> place;  // latitude, longitude [degree]
   std::optional<std::vector<float>> period;
 };
 void addSceneOptions(CLI::App& command, SceneOptions& options);
@@ -27,7 +29,8 @@ Scene readScene(const SceneOptions& options, Media media = Media::refused);
 
 // The camera, as far as the command line changes it.
 struct CameraOptions {
-  std::optional<float> elevation_deg, azimuth_deg, half_width, field_of_view_deg;
+  std::optional<double> elevation_deg, azimuth_deg, field_of_view_deg;
+  std::optional<float> half_width;
   std::optional<std::vector<float>> target;
   std::optional<std::vector<int>> size;
   bool given() const { return elevation_deg || azimuth_deg || half_width || field_of_view_deg || target || size; }

@@ -15,6 +15,7 @@
 #include "core/require.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
+#include "render/radians.hpp"
 #include "render/reference/trace_goal.hpp"
 #include "render/scene_file.hpp"
 
@@ -80,8 +81,8 @@ SweepScene::SweepScene(const SweepFile& sweep, std::size_t scene, std::uint64_t 
 // The scene in one row. Optics stand in the band that they are of.
 Scene SweepScene::sceneOf(const SweepTask& task, const SweepOptics& optics) const {
   Scene scene = scene_;
-  if (task.sun.zenith_deg) scene.suns.front().zenith = glm::radians(static_cast<float>(*task.sun.zenith_deg));
-  if (task.sun.azimuth_deg) scene.suns.front().azimuth = glm::radians(static_cast<float>(*task.sun.azimuth_deg));
+  if (task.sun.zenith_deg) scene.suns.front().zenith = radiansOf(*task.sun.zenith_deg);
+  if (task.sun.azimuth_deg) scene.suns.front().azimuth = radiansOf(*task.sun.azimuth_deg);
   for (TreeKind& kind : scene.kinds) {
     if (optics.leaf) kind.leaf[static_cast<std::size_t>(optics.band)] = *optics.leaf;
     if (optics.wood_reflectance) kind.wood_reflectance[optics.band] = *optics.wood_reflectance;
@@ -171,7 +172,9 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
     }
     if (sweep_.monte_carlo) rows.push_back(fmt::format("{},{},,,,", mc, noise));
     const SweepOptics& optics = task.optics[i];
-    const LeafOptics leaf = sceneOf(task, optics).kinds[0].leaf[static_cast<std::size_t>(optics.band)];
+    std::vector<LeafOptics> leaf;
+    for (const TreeKind& kind : sceneOf(task, optics).kinds)
+      leaf.push_back(kind.leaf[static_cast<std::size_t>(optics.band)]);
     for (const Model model : sweep_.models) {
       const ModelErrors errors = modelErrors(leafIrradiance(model, geometry, leaf), result.leaf_irradiance, of_depths);
       rows.push_back(fmt::format("{},{},{},{},{},{}", empty, noise, orNothing(errors.rms_category),

@@ -102,10 +102,10 @@ void opacityMaps(benchmark::State& state) {
   const std::vector<Direction> directions = spreadAxes(kDirections / 2);
   const int resolution = static_cast<int>(state.range(0));
   for (const Direction& along : directions)
-    if (!holdsProjectedArea(DeepOpacityMap(mesh, along, resolution, false), mesh))
+    if (!holdsProjectedArea(DeepOpacityMap(mesh, along, resolution, DeepOpacityMap::Wood::none), mesh))
       return state.SkipWithError("a map does not hold the area of the leaves");
   for (auto _ : state)
-    for (const Direction& along : directions) benchmark::DoNotOptimize(DeepOpacityMap(mesh, along, resolution, false));
+    for (const Direction& along : directions) benchmark::DoNotOptimize(DeepOpacityMap(mesh, along, resolution, DeepOpacityMap::Wood::none));
   state.SetItemsProcessed(state.iterations() * kDirections / 2);
 }
 BENCHMARK(opacityMaps)->ArgName("pixels")->Arg(128)->Arg(256)->UseRealTime()->Unit(benchmark::kMillisecond);

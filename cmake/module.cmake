@@ -73,11 +73,11 @@ function(sunfleck_module)
   endforeach()
 endfunction()
 
-# sunfleck_kernel(<target> <source>): compiles a source of a target once for each instruction set, with SUNFLECK_ISA, its
+# sunfleck_kernel(<target> <source>...): compiles sources of a target once for each instruction set, with SUNFLECK_ISA, its
 # name, and SUNFLECK_VECTOR_BYTES, the size of its vectors; the program chooses when it runs (core/instruction_set.hpp).
 # Each puts its code in a namespace SUNFLECK_ISA, or code of one set could stand in for another's. Where there is more
 # than the baseline the target has SUNFLECK_X86 defined.
-function(sunfleck_kernel target source)
+function(sunfleck_kernel target)
   set(baseline_bytes 16)
   set(avx2_bytes 32)
   set(avx2_flags -mavx2 -mfma)
@@ -85,7 +85,8 @@ function(sunfleck_kernel target source)
   set(avx512_flags -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512)
   set(optimised -O3)
   if(SUNFLECK_SANITIZE)
-    set(optimised -O1)  # the checks between unrolled code would compile for minutes
+    # The checks between unrolled code would compile for minutes, and make GCC see what is not set where all is.
+    set(optimised -O1 -Wno-maybe-uninitialized)
   endif()
   set(sets baseline)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -94,7 +95,7 @@ function(sunfleck_kernel target source)
   endif()
   foreach(isa IN LISTS sets)
     set(kernel ${target}_kernel_${isa})
-    add_library(${kernel} OBJECT ${source})
+    add_library(${kernel} OBJECT ${ARGN})
     target_compile_definitions(${kernel} PRIVATE SUNFLECK_ISA=${isa} SUNFLECK_VECTOR_BYTES=${${isa}_bytes})
     target_compile_options(${kernel} PRIVATE ${optimised} -fno-math-errno -ffp-contract=fast -fopenmp-simd -Wno-psabi
       ${${isa}_flags})

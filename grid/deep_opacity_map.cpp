@@ -112,9 +112,10 @@ void sortByDepth(std::span<Rank> line, Crossing* sorted) {
 
 }  // namespace
 
-DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, bool with_wood)
+DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, Wood wood)
     : axes_(axesAlong(along)) {
   assert(resolution >= 1);
+  const bool with_wood = wood != Wood::none;
   LentWorkspace lent;
   Workspace& workspace = *lent;
   auto& projected = workspace.projected;
@@ -179,6 +180,7 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
   first_[pixels] = band_first.back();
   crossings_ = std::make_unique_for_overwrite<Crossing[]>(band_first.back());
   if (with_wood) wood_depth_ = std::make_unique_for_overwrite<float[]>(pixels);
+  if (wood == Wood::first_and_last) last_wood_depth_ = std::make_unique_for_overwrite<float[]>(pixels);
   const auto firstPixel = [&](const detail::Span& span) {
     return pixelNumber(static_cast<int>(span.column), static_cast<int>(span.row));
   };
@@ -223,6 +225,15 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
         float* const depth = &wood_depth_[firstPixel(span)];
         for (std::uint32_t i = 0; i < span.length; ++i)
           depth[i] = std::min(depth[i], span.depth + static_cast<float>(i) * span.slope);
+      }
+    if (wood != Wood::first_and_last) return;
+    for (std::size_t pixel = begin; pixel < end; ++pixel)
+      last_wood_depth_[pixel] = -std::numeric_limits<float>::infinity();
+    for (const auto* of_thread : finders)
+      for (const detail::Span& span : of_thread->found[band].wood) {
+        float* const depth = &last_wood_depth_[firstPixel(span)];
+        for (std::uint32_t i = 0; i < span.length; ++i)
+          depth[i] = std::max(depth[i], span.depth + static_cast<float>(i) * span.slope);
       }
   });
 }

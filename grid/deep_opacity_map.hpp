@@ -22,9 +22,11 @@ struct Crossing {
 // direct light comes. Immutable after it is made.
 class DeepOpacityMap {
  public:
-  // `resolution` >= 1: pixels along the longer side. Pixels are square and cover the leaves and the wood. Without
-  // `with_wood` the wood is not looked for, which saves half of the work. Works in parallel.
-  DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, bool with_wood = true);
+  // Which wood is looked for on each line.
+  enum class Wood { none, first, first_and_last };
+  // `resolution` >= 1: pixels along the longer side. Pixels are square and cover the leaves and the wood. Without wood
+  // half of the work is saved. Works in parallel.
+  DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, Wood wood = Wood::first);
 
   Direction along() const { return axes_.along; }
   const Axes& axes() const { return axes_; }
@@ -39,6 +41,10 @@ class DeepOpacityMap {
   std::span<const Crossing> crossings(int x, int y) const;
   // Depth of the first wood in each pixel [m]; infinity where there is none; empty in a map made without wood.
   std::span<const float> woodDepth() const { return {wood_depth_.get(), wood_depth_ ? pixelNumber(0, size_.y) : 0}; }
+  // Depth of the last wood in each pixel [m]; -infinity where there is none; empty unless asked for.
+  std::span<const float> lastWoodDepth() const {
+    return {last_wood_depth_.get(), last_wood_depth_ ? pixelNumber(0, size_.y) : 0};
+  }
 
   // (right, up, depth) of a point in the map [m].
   glm::vec3 inMap(glm::vec3 point) const;
@@ -65,7 +71,7 @@ class DeepOpacityMap {
   glm::ivec2 size_{0};
   std::unique_ptr<std::uint32_t[]> first_;
   std::unique_ptr<Crossing[]> crossings_;
-  std::unique_ptr<float[]> wood_depth_;
+  std::unique_ptr<float[]> wood_depth_, last_wood_depth_;
 };
 
 }  // namespace sunfleck

@@ -39,6 +39,7 @@ std::vector<std::size_t> countedFrom0(std::size_t count) {
 FoliageStand::FoliageStand(FoliageEffort effort) : effort_(std::move(effort)) {
   assert(!effort_.axes.empty() && effort_.cells >= 1);
   sky_.assign(2 * effort_.axes.size(), glm::vec3(0.f));
+  for (const Direction& direction : sampleDirections()) below_.emplace_back(direction.z > 0.f ? 0.f : 1.f);
   cells_ = graph_.add("cells");
   sample_axes_ = graph_.add("sample maps");
   light_maps_ = graph_.add("light maps");
@@ -47,6 +48,9 @@ FoliageStand::FoliageStand(FoliageEffort effort) : effort_(std::move(effort)) {
   light_depths_ = graph_.add("light depths");
   compensation_ = graph_.add("G");
   sky_light_ = graph_.add("sky light");
+  ground_light_ = graph_.add("ground light");
+  ground_ = graph_.add("light on the ground");
+  graph_.resize(ground_, 1 + kMostLights);
 
   const std::size_t axes = effort_.axes.size();
   using Mark = ProductGraph::Mark;
@@ -74,10 +78,14 @@ FoliageStand::FoliageStand(FoliageEffort effort) : effort_(std::move(effort)) {
       mark(this->member(member / axes, light));
     }
   });
-  graph_.follows(sky_light_, sample_depths_, [this, axes](std::size_t member, const Mark& mark) {
-    placed_[member / axes].changed[kMostLights].clear();
-    mark(member / axes);
-  });
+  for (const auto& [product, of_product] :
+       {std::pair(sky_light_, kMostLights), std::pair(ground_light_, kMostLights + 1)})
+    graph_.follows(product, sample_depths_, [this, axes, of_product](std::size_t member, const Mark& mark) {
+      placed_[member / axes].changed[of_product].clear();
+      mark(member / axes);
+    });
+  graph_.follows(ground_, sample_axes_, [](std::size_t, const Mark& mark) { mark(0); });
+  graph_.follows(ground_, light_axes_, [](std::size_t member, const Mark& mark) { mark(1 + member % kMostLights); });
 }
 
 void FoliageStand::requireFits(const TreeMesh& mesh) const {
@@ -111,8 +119,11 @@ void FoliageStand::setLeaf(std::size_t prototype, const std::array<LeafOptics, k
   for (std::size_t i = 0; i < placed_.size(); ++i)
     if (placed_[i].prototype == prototype) {
       placed_[i].changed[kMostLights].clear();
+      placed_[i].changed[kMostLights + 1].clear();
       graph_.touch(sky_light_, i);
+      graph_.touch(ground_light_, i);
     }
+  graph_.touchAll(ground_);
 }
 
 std::size_t FoliageStand::add(std::size_t prototype, const glm::vec3& position) {
@@ -123,6 +134,7 @@ std::size_t FoliageStand::add(std::size_t prototype, const glm::vec3& position) 
   graph_.resize(light_depths_, placed_.size() * kMostLights);
   graph_.resize(compensation_, placed_.size() * kMostLights);
   graph_.resize(sky_light_, placed_.size());
+  graph_.resize(ground_light_, placed_.size());
   move(placed_.size() - 1, position);
   return placed_.size() - 1;
 }
@@ -133,6 +145,7 @@ void FoliageStand::move(std::size_t instance, const glm::vec3& position) {
   const glm::vec3 before = positions_[instance];
   changes_.push_back({instance, isPresent(before) ? std::optional(before) : std::nullopt, position});
   positions_[instance] = position;
+  graph_.touchAll(ground_);
   for (std::size_t axis = 0; axis < effort_.axes.size(); ++axis)
     graph_.touch(sample_depths_, instance * effort_.axes.size() + axis);
   for (std::size_t light = 0; light < kMostLights; ++light) graph_.touch(light_depths_, member(instance, light));
@@ -143,6 +156,7 @@ void FoliageStand::remove(std::size_t instance) {
   changes_.push_back({instance, positions_[instance], std::nullopt});
   positions_[instance] = glm::vec3(std::numeric_limits<float>::quiet_NaN());
   placed_[instance] = {.prototype = placed_[instance].prototype};
+  graph_.touchAll(ground_);
 }
 
 void FoliageStand::setPeriod(std::optional<glm::vec2> period) {
@@ -178,6 +192,13 @@ void FoliageStand::setSky(std::span<const glm::vec3> radiance) {
   sky_.assign(radiance.begin(), radiance.end());
   for (Placed& placed : placed_) placed.changed[kMostLights].clear();
   graph_.touchAll(sky_light_);
+  graph_.touch(ground_, 0);
+}
+
+void FoliageStand::setGround(const GroundGrid& ground) {
+  if (ground == ground_grid_) return;
+  ground_grid_ = ground;
+  graph_.touchAll(ground_);
 }
 
 std::vector<Direction> FoliageStand::sampleDirections() const {
@@ -235,7 +256,10 @@ std::span<const float> FoliageStand::compensation(std::size_t instance, std::siz
   return placed_[instance].compensation[light];
 }
 std::span<const glm::vec3> FoliageStand::skyLight(std::size_t instance) const {
-  return placed_[instance].sky_light;
+  return placed_[instance].environment[0];
+}
+std::span<const glm::vec3> FoliageStand::groundLight(std::size_t instance) const {
+  return placed_[instance].environment[1];
 }
 
 std::size_t FoliageStand::memoryBytes() const {
@@ -247,7 +271,8 @@ std::size_t FoliageStand::memoryBytes() const {
       if (map) bytes += map->crossings().size_bytes() + map->first().size_bytes() + map->woodDepth().size_bytes();
   }
   for (const Placed& placed : placed_) {
-    bytes += placed.depths.capacity() * sizeof(FixedDepth) + placed.sky_light.capacity() * sizeof(glm::vec3);
+    bytes += placed.depths.capacity() * sizeof(FixedDepth);
+    for (const auto& light : placed.environment) bytes += light.capacity() * sizeof(glm::vec3);
     for (const auto& g : placed.compensation) bytes += g.capacity() * sizeof(float);
   }
   return bytes;

@@ -28,6 +28,15 @@ struct FoliageEffort {
   int cells = 16;                                // along the longest side of a tree
 };
 
+// Level ground in cells. Cell (x, y) is number y * size.x + x.
+struct GroundGrid {
+  glm::vec2 low{0.f};        // corner of cell (0, 0) [m]
+  float height = 0.f;        // [m]
+  glm::vec2 cell_size{1.f};  // [m]
+  glm::ivec2 size{0};        // [cell]
+  bool operator==(const GroundGrid&) const = default;
+};
+
 // A stand of trees, copies of some prototypes, and what the models need to know of it: the steps 1 to 5 of Shinya et
 // al. 2013, section 5.4. Trees may be moved, added and removed, lights turned, leaves and sky exchanged. Each such
 // change only says what has become stale; a product is computed when it is asked for, where it is asked for, and as far
@@ -64,12 +73,17 @@ class FoliageStand {
   // number of them, and on a value that is negative or not finite.
   void setSky(std::span<const glm::vec3> radiance);
 
+  // Where light on the ground is wanted. It lies below all leaves.
+  void setGround(const GroundGrid& ground);
+  const GroundGrid& ground() const { return ground_grid_; }
+
   // Outward from a place: each axis, followed by the direction against it.
   std::vector<Direction> sampleDirections() const;
 
   std::size_t instances() const { return placed_.size(); }
   std::size_t prototypeOf(std::size_t instance) const { return placed_[instance].prototype; }
   const CellGrid& cells(std::size_t prototype);
+  const CellGrid& cellsMade(std::size_t prototype) const { return prototypes_[prototype].cells; }  // as they last were
   // (D3) The prototype's deep opacity map along a light.
   const DeepOpacityMap& lightMap(std::size_t prototype, std::size_t light);
 
@@ -77,8 +91,11 @@ class FoliageStand {
   // std::runtime_error("interrupted") when `progress` ends them; what is done stays.
   //   (D4) optical depths, and (D5) G for each light
   void prepareCompensation(std::span<const std::size_t> instances, const Progress& progress = {});
-  //   (D10) environment light
+  //   (D10) environment light: of the sky, and of a ground that sends the same radiance up from everywhere
   void prepareSkyLight(std::span<const std::size_t> instances, const Progress& progress = {});
+  void prepareGroundLight(std::span<const std::size_t> instances, const Progress& progress = {});
+  //   (D12) what reaches the ground, of the sky and of each light
+  void prepareGround(const Progress& progress = {});
   std::vector<std::size_t> allInstances() const;
 
   // Of the active cells of an instance, in their order; prepared before.
@@ -91,6 +108,11 @@ class FoliageStand {
   std::span<const float> compensation(std::size_t instance, std::size_t light) const;
   //   (D10) mean radiance of the environment's light over all directions, per band [W m^-2 sr^-1]
   std::span<const glm::vec3> skyLight(std::size_t instance) const;
+  //   (D10) the same, of a ground of radiance 1 [1]
+  std::span<const glm::vec3> groundLight(std::size_t instance) const;
+  // (D12) Of the ground's cells, per band: irradiance by the sky [W m^-2], and the share of each light that arrives [1]
+  std::span<const glm::vec3> groundSky() const { return ground_sky_; }
+  std::span<const glm::vec3> groundShare(std::size_t light) const { return ground_shares_[light]; }
 
   // Another number whenever the product is made anew; 0: not yet made.
   std::uint64_t cellsRevision(std::size_t prototype) const { return graph_.revision(cells_, prototype); }
@@ -101,6 +123,9 @@ class FoliageStand {
     return graph_.revision(compensation_, member(instance, light));
   }
   std::uint64_t skyLightRevision(std::size_t instance) const { return graph_.revision(sky_light_, instance); }
+  std::uint64_t groundLightRevision(std::size_t instance) const { return graph_.revision(ground_light_, instance); }
+  std::uint64_t groundSkyRevision() const { return graph_.revision(ground_, 0); }
+  std::uint64_t groundShareRevision(std::size_t light) const { return graph_.revision(ground_, 1 + light); }
 
   // What has been made and what was reused since this stand was made.
   std::vector<ProductCost> costs() const { return graph_.costs(); }
@@ -118,9 +143,9 @@ class FoliageStand {
     std::size_t prototype = 0;
     std::vector<FixedDepth> depths;  // rows of active cells: beyond and before for each axis, as in Prototype::axes
     std::array<std::vector<float>, kMostLights> compensation;
-    std::vector<glm::vec3> sky_light;
-    // Cells whose depths changed since; empty: all. For each light, then for the sky.
-    std::array<std::vector<char>, kMostLights + 1> changed;
+    std::array<std::vector<glm::vec3>, 2> environment;  // light of the sky, of the ground
+    // Cells whose depths changed since; empty: all. For each light, then for the sky, for the ground.
+    std::array<std::vector<char>, kMostLights + 2> changed;
   };
   struct Change {
     std::size_t instance;
@@ -160,7 +185,8 @@ class FoliageStand {
   void requireMemory(std::span<const std::size_t> instances, std::span<const std::size_t> standing) const;
   void makeDepths(std::size_t instance, std::size_t axis);
   void makeCompensation(std::size_t instance, std::size_t light);
-  void makeSkyLight(std::size_t instance);
+  void makeEnvironment(std::size_t instance, std::size_t which, std::span<const glm::vec3> radiance);
+  void makeGround(std::size_t member);
   Bounds reached(const CellGrid& receiver) const;
 
   FoliageEffort effort_;
@@ -170,7 +196,10 @@ class FoliageStand {
   std::vector<glm::vec3> positions_;  // of the instances [m]; not a number where there is none
   std::optional<glm::vec2> period_;
   std::vector<Direction> lights_;
-  std::vector<glm::vec3> sky_;
+  std::vector<glm::vec3> sky_, below_;  // radiance by sample directions, below_: 1 from below the horizon
+  GroundGrid ground_grid_;
+  std::vector<glm::vec3> ground_sky_;
+  std::array<std::vector<glm::vec3>, kMostLights> ground_shares_;
   std::vector<Change> changes_;  // of positions, not yet in the index
   bool index_stale_ = true;
   glm::ivec2 around_{0};  // periods away up to which the index has copies
@@ -179,7 +208,7 @@ class FoliageStand {
   std::atomic<std::size_t> unlit_{0};  // cells found without light in the last preparation
   ProductGraph graph_;
   ProductGraph::Product cells_, sample_axes_, light_maps_, light_axes_, sample_depths_, light_depths_, compensation_,
-      sky_light_;
+      sky_light_, ground_light_, ground_;
 };
 
 }  // namespace sunfleck

@@ -33,6 +33,7 @@ void FoliageStand::touchDepths() {
   index_stale_ = true;
   graph_.touchAll(sample_depths_);
   graph_.touchAll(light_depths_);
+  graph_.touchAll(ground_);
 }
 
 void FoliageStand::touchDepths(std::size_t instance, std::size_t axis) {
@@ -171,6 +172,7 @@ void FoliageStand::passOn(const Adjusted& adjusted) {
     for (std::size_t cell = 0; cell < cells.size(); ++cell) changed[cell] |= cells[cell];
   };
   pass(sky_light_, adjusted.instance, kMostLights, adjusted.by_samples);
+  pass(ground_light_, adjusted.instance, kMostLights + 1, adjusted.by_samples);
   for (std::size_t light = 0; light < lights_.size(); ++light) {
     const std::size_t of_light = member(adjusted.instance, light);
     pass(compensation_, of_light, light, adjusted.by_samples);

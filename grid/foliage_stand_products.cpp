@@ -81,6 +81,7 @@ void FoliageStand::prepareDepths(std::span<const std::size_t> instances, bool wi
     graph_.touchAll(light_axes_);
   }
   requireMemory(instances, standing);
+  constexpr auto wood = DeepOpacityMap::Wood::first_and_last;
   std::vector<std::size_t> members;
   for (const std::size_t p : standing)
     for (std::size_t axis = 0; axis < axes; ++axis) members.push_back(p * axes + axis);
@@ -89,7 +90,7 @@ void FoliageStand::prepareDepths(std::span<const std::size_t> instances, bool wi
       [&](std::size_t i) {
         Prototype& p = prototypes_[i / axes];
         p.axes[i % axes].emplace(
-            p.cells, DeepOpacityMap(*p.mesh, effort_.axes[i % axes], effort_.sample_resolution, false), seen_from_);
+            p.cells, DeepOpacityMap(*p.mesh, effort_.axes[i % axes], effort_.sample_resolution, wood), seen_from_);
       },
       progress);
   if (with_lights) {
@@ -131,7 +132,14 @@ void FoliageStand::prepareSkyLight(std::span<const std::size_t> instances, const
   const std::vector<std::size_t> those = present(instances);
   prepareDepths(those, false, progress);
   graph_.bring(
-      sky_light_, those, [&](std::size_t i) { makeSkyLight(i); }, progress);
+      sky_light_, those, [&](std::size_t i) { makeEnvironment(i, 0, sky_); }, progress);
+}
+
+void FoliageStand::prepareGroundLight(std::span<const std::size_t> instances, const Progress& progress) {
+  const std::vector<std::size_t> those = present(instances);
+  prepareDepths(those, false, progress);
+  graph_.bring(
+      ground_light_, those, [&](std::size_t i) { makeEnvironment(i, 1, below_); }, progress);
 }
 
 // (D4) The tree itself and all that its cells meet along the axis.
@@ -178,7 +186,11 @@ void forDueCells(std::size_t count, const std::vector<char>& changed, const Work
 }
 
 void gather(std::span<const FixedDepth> row, std::span<const std::uint32_t> cells, float* to) {
-  for (std::size_t i = 0; i < cells.size(); ++i) to[i] = depthOf(row[cells[i]]);
+  const std::size_t first = cells.empty() ? 0 : cells.front();
+  if (!cells.empty() && cells.back() - first + 1 == cells.size())  // as most are: in vectors
+    for (std::size_t i = 0; i < cells.size(); ++i) to[i] = depthOf(row[first + i]);
+  else
+    for (std::size_t i = 0; i < cells.size(); ++i) to[i] = depthOf(row[cells[i]]);
 }
 
 }  // namespace
@@ -214,20 +226,25 @@ void FoliageStand::makeCompensation(std::size_t instance, std::size_t light) {
   placed.changed[light].clear();
 }
 
-// (D10) Each axis is the normal of a slab, lit on both faces by the sky there.
-void FoliageStand::makeSkyLight(std::size_t instance) {
+// (D10) Each axis is the normal of a slab, lit on both faces by what shines there; (D13) where the tree's own wood does
+// not hide it.
+void FoliageStand::makeEnvironment(std::size_t instance, std::size_t which, std::span<const glm::vec3> radiance) {
   Placed& placed = placed_[instance];
   const Prototype& prototype = prototypes_[placed.prototype];
   const std::size_t count = prototype.cells.active.size();
-  placed.sky_light.resize(count, glm::vec3(0.f));
-  const float weight = 1.f / static_cast<float>(sky_.size());
-  std::vector<float> depth(kBlock), thickness(kBlock), down(kBlock), up(kBlock);
+  std::vector<glm::vec3>& light = placed.environment[which];
+  light.resize(count, glm::vec3(0.f));
+  const float weight = 1.f / static_cast<float>(radiance.size());
+  std::vector<float> depth(kBlock), thickness(kBlock), down(kBlock), up(kBlock), open(kBlock);
   std::array<std::vector<float>, kBands> sum;
-  forDueCells(count, placed.changed[kMostLights], [&](std::span<const std::uint32_t> cells) {
+  forDueCells(count, placed.changed[kMostLights + which], [&](std::span<const std::uint32_t> cells) {
     const std::size_t n = cells.size();
     for (std::vector<float>& of_band : sum) of_band.assign(n, 0.f);
-    for (std::size_t j = 0; j < sky_.size(); ++j) {
-      if (sky_[j] == glm::vec3(0.f)) continue;
+    for (std::size_t j = 0; j < radiance.size(); ++j) {
+      if (radiance[j] == glm::vec3(0.f)) continue;
+      const TreeDepths& own = *prototype.axes[j / 2];
+      const std::span<const float> share = j % 2 == 0 ? own.openBeyond() : own.openBefore();
+      for (std::size_t i = 0; i < n; ++i) open[i] = weight * share[prototype.cells.active[cells[i]]];
       gather(depths(instance, j), cells, depth.data());
       gather(depths(instance, j ^ 1), cells, thickness.data());
       for (std::size_t i = 0; i < n; ++i) thickness[i] += depth[i];
@@ -237,13 +254,13 @@ void FoliageStand::makeSkyLight(std::size_t instance) {
           spp::sppPowers(std::span(depth).first(n), std::span(thickness).first(n), kMu0, leaf.albedo(),
                          spp::sphericalLeafForwardShare(leaf.reflectance, leaf.transmittance), std::span(down).first(n),
                          std::span(up).first(n));
-        const float radiance = weight * sky_[j][static_cast<int>(band)];
-        for (std::size_t i = 0; i < n; ++i) sum[band][i] += radiance * (down[i] + up[i]);
+        const float from = radiance[j][static_cast<int>(band)];
+        for (std::size_t i = 0; i < n; ++i) sum[band][i] += from * open[i] * (down[i] + up[i]);
       }
     }
-    for (std::size_t i = 0; i < n; ++i) placed.sky_light[cells[i]] = {sum[0][i], sum[1][i], sum[2][i]};
+    for (std::size_t i = 0; i < n; ++i) light[cells[i]] = {sum[0][i], sum[1][i], sum[2][i]};
   });
-  placed.changed[kMostLights].clear();
+  placed.changed[kMostLights + which].clear();
 }
 
 }  // namespace sunfleck

@@ -26,22 +26,39 @@ struct RaySums {
   std::uint64_t before = 0, beyond = 0, rays = 0;
 };
 
-// Another tree of the stand in the pixels of the light's map: the rectangle of those in which its crossings may count.
+// Another tree of the stand in the pixels of a tree's map: the rectangle of those in which its crossings may count.
 struct ShiftedTree {
-  glm::vec3 displacement;  // [m]
-  glm::ivec2 pixels;       // from a pixel of the map to the one that holds this tree's crossings
-  float depth;             // how much deeper they lie [m]
-  glm::ivec2 low, high;    // high is beyond the last
+  const DeepOpacityMap* map;  // its own
+  glm::vec3 displacement;     // [m]
+  glm::vec2 scale,
+      offset;            // from a pixel's numbers to those, rounded down, of the one that holds this tree's crossings
+  glm::ivec2 pixels;     // the same where both maps are one
+  float depth;           // how much deeper they lie [m]
+  glm::ivec2 low, high;  // high is beyond the last
 
-  ShiftedTree(const DeepOpacityMap& light, const glm::vec3& from_leaves) : displacement(from_leaves) {
+  ShiftedTree(const DeepOpacityMap& light, const DeepOpacityMap& own_map, const glm::vec3& from_leaves)
+      : map(&own_map), displacement(from_leaves) {
     const glm::vec3 shift = light.inMap(displacement);
-    const glm::vec2 size(light.size());  // shifts beyond it need not fit an int
-    pixels = glm::ivec2(glm::clamp(glm::floor(0.5f - glm::vec2(shift) / light.pixelSize()), -size, size));
     depth = shift.z;
-    low = glm::max(glm::ivec2(0), -pixels);
-    high = glm::min(light.size(), light.size() - pixels);
+    const glm::vec2 size(light.size());  // shifts beyond it need not fit an int
+    if (map == &light) {
+      pixels = glm::ivec2(glm::clamp(glm::floor(0.5f - glm::vec2(shift) / light.pixelSize()), -size, size));
+      low = glm::max(glm::ivec2(0), -pixels);
+      high = glm::min(light.size(), light.size() - pixels);
+      return;
+    }
+    scale = glm::vec2(light.pixelSize() / map->pixelSize());
+    offset = (light.corner() - glm::vec2(shift) - map->corner()) / map->pixelSize() + 0.5f * scale;
+    low = glm::ivec2(glm::clamp(glm::floor(-offset / scale), glm::vec2(0.f), size));
+    high = glm::ivec2(glm::clamp(glm::ceil((glm::vec2(map->size()) - offset) / scale), glm::vec2(0.f), size));
   }
   bool meets() const { return low.x < high.x && low.y < high.y; }
+  std::span<const Crossing> crossings(const DeepOpacityMap& light, int x, int y) const {
+    if (map == &light) return map->crossings(x + pixels.x, y + pixels.y);
+    const glm::ivec2 at(glm::floor(scale * glm::vec2(x, y) + offset));
+    if (at.x < 0 || at.y < 0 || at.x >= map->size().x || at.y >= map->size().y) return {};
+    return map->crossings(at.x, at.y);
+  }
 };
 
 // Adds the tree's own crossings on the lines through a row of pixels.
@@ -79,7 +96,7 @@ void addOthersRow(const DeepOpacityMap& light, std::span<const ShiftedTree> tree
     std::size_t all = 0;
     for (const ShiftedTree* tree : met) {
       if (x < tree->low.x || x >= tree->high.x) continue;
-      const std::span<const Crossing> others = light.crossings(x + tree->pixels.x, y + tree->pixels.y);
+      const std::span<const Crossing> others = tree->crossings(light, x, y);
       std::uint32_t passed = 0;  // both lines are sorted by depth
       for (std::size_t i = 0; i < line.size(); ++i) {
         while (passed < others.size() && others[passed].depth + tree->depth < line[i].depth) ++passed;
@@ -125,7 +142,7 @@ std::vector<RaySums> metOfOthers(const DeepOpacityMap& light, std::span<const Sh
   for (std::size_t leaf = 0; leaf < own.size(); ++leaf) {
     if (own[leaf].rays > 0) continue;
     for (const ShiftedTree& tree : trees) {
-      const DeepOpacityMap::Counts counts = light.counts(centres[leaf] - tree.displacement);
+      const DeepOpacityMap::Counts counts = tree.map->counts(centres[leaf] - tree.displacement);
       sums[leaf].before += static_cast<std::uint64_t>(counts.before);
       sums[leaf].beyond += static_cast<std::uint64_t>(counts.beyond);
     }
@@ -177,26 +194,44 @@ std::vector<float> leafProjections(const TreeMesh& mesh, Direction direction) {
   return projections;
 }
 
-std::vector<LeafDepths> leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, const Stand& stand,
-                                   const Progress& progress) {
-  const std::vector<glm::vec3> centres = leafCentres(mesh);
-  const std::vector<RaySums> own = metOfOwn(light, centres);
-  const Bounds box = leafBounds(mesh);
+std::vector<LeafDepths> leafDepths(std::span<const LitKind> kinds, const Stand& stand, const Progress& progress) {
+  struct Kind {
+    std::vector<glm::vec3> centres;
+    std::vector<RaySums> own;
+    Bounds box;
+    Bounds reached;  // from somewhere in the box to somewhere in that of any kind
+  };
+  std::vector<Kind> of_kinds;
+  float width = 1e-6f;
+  glm::ivec2 around(0);
+  for (const LitKind& kind : kinds) {
+    Kind& of = of_kinds.emplace_back();
+    of.centres = leafCentres(*kind.mesh);
+    of.own = metOfOwn(*kind.light, of.centres);
+    of.box = leafBounds(*kind.mesh);
+    width = std::max({width, of.box.size().x, of.box.size().y});
+    around = glm::max(around, periodsAround(stand, of.box));
+  }
+  for (Kind& of : of_kinds)
+    for (const Kind& other : of_kinds)
+      of.reached.include(Bounds{other.box.low - of.box.high, other.box.high - of.box.low});
   std::vector<glm::vec3> positions;
   for (const Placement& tree : stand.trees) positions.push_back(tree.position);
-  const StandIndex index(positions, std::max({box.size().x, box.size().y, 1e-6f}), stand.period,
-                         periodsAround(stand, box));
-  // From somewhere in the box to somewhere in a box like it.
-  const Bounds reached{-box.size(), box.size()};
+  const StandIndex index(positions, width, stand.period, around);
 
   std::vector<LeafDepths> result(stand.trees.size());
   const auto makeDepths = [&](std::size_t tree) {
+    const std::size_t kind = stand.trees[tree].kind;
+    const DeepOpacityMap& light = *kinds[kind].light;
+    const std::vector<RaySums>& own = of_kinds[kind].own;
     std::vector<ShiftedTree> others;
-    index.along(positions[tree], reached, light.along(), [&](std::uint32_t other, const glm::vec3& displacement) {
-      if (other == tree && displacement == glm::vec3(0.f)) return;
-      if (const ShiftedTree shifted(light, displacement); shifted.meets()) others.push_back(shifted);
-    });
-    const std::vector<RaySums> met = metOfOthers(light, others, own, centres);
+    index.along(positions[tree], of_kinds[kind].reached, light.along(),
+                [&](std::uint32_t other, const glm::vec3& displacement) {
+                  if (other == tree && displacement == glm::vec3(0.f)) return;
+                  const ShiftedTree shifted(light, *kinds[stand.trees[other].kind].light, displacement);
+                  if (shifted.meets()) others.push_back(shifted);
+                });
+    const std::vector<RaySums> met = metOfOthers(light, others, own, of_kinds[kind].centres);
     LeafDepths& depths = result[tree];
     depths.depth.reserve(own.size());
     depths.thickness.reserve(own.size());
@@ -213,6 +248,12 @@ std::vector<LeafDepths> leafDepths(const TreeMesh& mesh, const DeepOpacityMap& l
     tbb::parallel_for(first, std::min(result.size(), first + kTrees), makeDepths);
   }
   return result;
+}
+
+std::vector<LeafDepths> leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, const Stand& stand,
+                                   const Progress& progress) {
+  const LitKind kind{&mesh, &light};
+  return leafDepths(std::span(&kind, 1), stand, progress);
 }
 
 }  // namespace sunfleck

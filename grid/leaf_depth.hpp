@@ -16,11 +16,19 @@ struct LeafDepths {
   std::vector<float> thickness;  // w = n+ + n- + 1, the leaf itself included [1], >= depth + 1
 };
 
+// A kind of tree and its map along a light.
+struct LitKind {
+  const TreeMesh* mesh;
+  const DeepOpacityMap* light;
+};
+
 // (D6) Depth and thickness of each leaf of each tree of the stand, Eq. 29: crossing counts along the light's axis,
 // averaged over the light rays (the map's pixels) that meet the leaf. A leaf that no pixel centre falls on is counted
 // at its centre. Another tree's crossings are read in the pixel nearest to where they are. Rotations are not regarded.
 // Throws InvalidInput as periodsAround() does, and std::runtime_error("interrupted") when `progress` ends it.
-//   light  of the tree, along the light
+//   kinds  that the stand's trees are of, with maps along the same light
+std::vector<LeafDepths> leafDepths(std::span<const LitKind> kinds, const Stand& stand, const Progress& progress = {});
+// The same for one kind.
 std::vector<LeafDepths> leafDepths(const TreeMesh& mesh, const DeepOpacityMap& light, const Stand& stand = {},
                                    const Progress& progress = {});
 

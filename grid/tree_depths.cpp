@@ -1,10 +1,13 @@
 #include "grid/tree_depths.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
+
+#include "grid/detail/part_sums.hpp"
 
 namespace sunfleck {
 namespace {
@@ -16,47 +19,6 @@ constexpr float kFinestPicture = 2.f;  // as seen from cells so many of the map'
 constexpr int kPixelsPerCell = 8;      // of a picture of thickness, to a cell's side
 constexpr int kParts = 2;              // of a cell's side, that depths within the crown are told apart in
 constexpr int kMargin = 1;             // cells around the tree's in which they are told too
-
-// The part of a line that lies in a box, as distances along it; empty when the first is not the smaller.
-glm::vec2 within(const Bounds& box, const glm::vec3& from, const glm::vec3& along) {
-  glm::vec2 part(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
-  for (int axis = 0; axis < 3; ++axis) {
-    if (along[axis] == 0.f) {
-      if (!(from[axis] >= box.low[axis] && from[axis] <= box.high[axis])) return {1.f, 0.f};
-      continue;
-    }
-    const float a = (box.low[axis] - from[axis]) / along[axis], b = (box.high[axis] - from[axis]) / along[axis];
-    part = {std::max(part.x, std::min(a, b)), std::min(part.y, std::max(a, b))};
-  }
-  return part;
-}
-
-// Calls visit(cell, begin, end) for the cells that a line passes, `begin` and `end` being distances along it.
-template <typename Visit>
-void walk(const CellGrid& grid, const glm::vec3& from, const glm::vec3& along, const Visit& visit) {
-  const glm::vec2 part = within(grid.box(), from, along);
-  if (!(part.x < part.y)) return;
-  glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor((from + part.x * along - grid.low) / grid.cell_size)),
-                               glm::ivec3(0), grid.size - 1);
-  glm::vec3 next;  // distance at which the line leaves the cell across each axis
-  glm::vec3 step;  // distance from one such crossing to the next
-  glm::ivec3 turn;
-  for (int axis = 0; axis < 3; ++axis) {
-    turn[axis] = along[axis] > 0.f ? 1 : -1;
-    const float plane = grid.low[axis] + grid.cell_size * static_cast<float>(cell[axis] + (along[axis] > 0.f ? 1 : 0));
-    next[axis] = along[axis] == 0.f ? std::numeric_limits<float>::infinity() : (plane - from[axis]) / along[axis];
-    step[axis] = along[axis] == 0.f ? 0.f : grid.cell_size / std::abs(along[axis]);
-  }
-  for (float at = part.x; at < part.y;) {
-    const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
-    const float end = std::clamp(next[axis], at, part.y);
-    visit(grid.number(cell), at, end);
-    at = end;
-    cell[axis] += turn[axis];
-    if (cell[axis] < 0 || cell[axis] >= grid.size[axis]) return;
-    next[axis] += step[axis];
-  }
-}
 
 // Sums over all pixels left of and below a corner between pixels, from which the mean over any rectangle follows.
 class SummedArea {
@@ -156,27 +118,18 @@ Lattice throughCells(const DeepOpacityMap& map, float side, glm::vec2 corner, gl
 
 TreeDepths::TreeDepths(const CellGrid& grid, const DeepOpacityMap& map, std::span<const float> seen_from)
     : axes_(map.axes()) {
-  const std::vector<Means> means = walkLines(grid, map);
-  for (const float seen_side : seen_from) {
-    Picture& picture = pictures_.emplace_back();
-    within_.emplace_back();
-    if (seen_side == 0.f) continue;
-    within_.back() = overCells(means, seen_side);
-    const float side = std::max(seen_side, kFinestPicture * map.pixelSize());
-    const float pixel = side / kPixelsPerCell;  // [m]
-    const glm::vec2 covered = map.pixelSize() * glm::vec2(map.size());
-    // Half a cell's diagonal is .87 of its side; one more pixel is empty.
-    const glm::ivec2 size = glm::ivec2(glm::ceil((covered + 2.f * side) / pixel)) + 2;
-    picture.per_pixel = 1.f / pixel;
-    picture.corner = map.corner() + 0.5f * (covered - pixel * glm::vec2(size - 1));
-    picture.last = glm::vec2(size - 1);
-    picture.width = static_cast<std::size_t>(size.x);
-    picture.thickness.reserve(picture.width * static_cast<std::size_t>(size.y));
-    Lattice lattice = throughCells(map, side, picture.corner, kFiner * (size - 1) + 1);
-    for (int y = 0; y < size.y; ++y)
-      for (int x = 0; x < size.x; ++x)
-        picture.thickness.push_back(fixedDepth(depthSteps(lattice(kFiner * x, kFiner * y))));
-  }
+  pictures_.resize(seen_from.size());
+  within_.resize(seen_from.size());
+  const auto inside = [&] {
+    const std::vector<Means> means = walkLines(grid, map);
+    for (std::size_t i = 0; i < seen_from.size(); ++i)
+      if (seen_from[i] > 0.f) within_[i] = overCells(means, seen_from[i]);
+  };
+  const auto outside = [&] {
+    for (std::size_t i = 0; i < seen_from.size(); ++i)
+      if (seen_from[i] > 0.f) pictures_[i] = pictureOf(map, seen_from[i]);
+  };
+  tbb::parallel_invoke(inside, outside);
   cells_.reserve(grid.active.size());
   Bounds box;
   for (const std::uint32_t cell : grid.active) {
@@ -187,65 +140,56 @@ TreeDepths::TreeDepths(const CellGrid& grid, const DeepOpacityMap& map, std::spa
   cells_high_ = glm::vec2(box.high);
 }
 
+TreeDepths::Picture TreeDepths::pictureOf(const DeepOpacityMap& map, float seen_side) {
+  const float side = std::max(seen_side, kFinestPicture * map.pixelSize());
+  const float pixel = side / kPixelsPerCell;  // [m]
+  const glm::vec2 covered = map.pixelSize() * glm::vec2(map.size());
+  // Half a cell's diagonal is .87 of its side; one more pixel is empty.
+  const glm::ivec2 size = glm::ivec2(glm::ceil((covered + 2.f * side) / pixel)) + 2;
+  Picture picture{.corner = map.corner() + 0.5f * (covered - pixel * glm::vec2(size - 1)),
+                  .per_pixel = 1.f / pixel,
+                  .last = glm::vec2(size - 1),
+                  .width = static_cast<std::size_t>(size.x)};
+  picture.thickness.reserve(picture.width * static_cast<std::size_t>(size.y));
+  Lattice lattice = throughCells(map, side, picture.corner, kFiner * (size - 1) + 1);
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x)
+      picture.thickness.push_back(fixedDepth(depthSteps(lattice(kFiner * x, kFiner * y))));
+  return picture;
+}
+
 // Means over parts of cells.
 std::vector<TreeDepths::Means> TreeDepths::walkLines(const CellGrid& grid, const DeepOpacityMap& map) {
-  struct Sums {
-    float length = 0.f, beyond = 0.f, before = 0.f;  // [m], and crossings times [m]
-  };
   parts_.cell_size = grid.cell_size / kParts;
   parts_.low = grid.low - static_cast<float>(kMargin) * grid.cell_size;
   parts_.size = kParts * (grid.size + 2 * kMargin);
-  std::vector<Sums> sums(parts_.number({0, 0, parts_.size.z}));
   const int every = std::max(1, static_cast<int>(grid.cell_size / (kLinesPerCell * map.pixelSize())));
-  // The cells may reach beyond the map, whose pixels cover the tree: the lines there meet no leaf.
-  Bounds shadow;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Bounds box = parts_.box();
-    shadow.include(map.inMap({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                              corner & 4 ? box.high.z : box.low.z}));
-  }
-  const float line_step = map.pixelSize() * static_cast<float>(every);
-  const glm::ivec2 first(glm::floor((glm::vec2(shadow.low) - map.corner()) / line_step));
-  const glm::ivec2 last(glm::ceil((glm::vec2(shadow.high) - map.corner()) / line_step));
-  for (int row = first.y; row <= last.y; ++row)
-    for (int column = first.x; column <= last.x; ++column) {
-      const int x = column * every + every / 2, y = row * every + every / 2;
-      const bool in_map = x >= 0 && y >= 0 && x < map.size().x && y < map.size().y;
-      const std::span<const Crossing> line = in_map ? map.crossings(x, y) : std::span<const Crossing>{};
-      const auto all = static_cast<float>(line.size());
-      std::size_t met = 0;
-      walk(parts_, map.inSpace(x, y, 0.f), axes_.along, [&](std::size_t part, float begin, float end) {
-        Sums& of_part = sums[part];
-        while (met < line.size() && line[met].depth < begin) ++met;
-        float before = static_cast<float>(met) * (end - begin);
-        for (; met < line.size() && line[met].depth < end; ++met) before += end - line[met].depth;
-        of_part.length += end - begin;
-        of_part.before += before;
-        of_part.beyond += all * (end - begin) - before;
-      });
-    }
-  const auto mean = [&](const Sums& of, const glm::vec3& centre) {
+  const std::vector<detail::PartSums> sums = detail::sumsOverParts(parts_, map, every);
+  const auto mean = [&](const detail::PartSums& of, const CellGrid& of_grid, std::size_t number) {
     if (of.length > 0.f) return Means{std::max(of.beyond, 0.f) / of.length, of.before / of.length};
     // The map's lines are too coarse for it: the nearest to its centre.
-    const DeepOpacityMap::Counts counts = map.counts(centre);
+    const DeepOpacityMap::Counts counts = map.counts(of_grid.centre(number));
     return Means{static_cast<float>(counts.beyond), static_cast<float>(counts.before)};
   };
+  const bool with_wood = !map.lastWoodDepth().empty();
   for (std::size_t cell = 0; cell < grid.count(); ++cell) {
-    Sums of_cell;
-    for (int i = 0; i < kParts * kParts * kParts; ++i) {
-      const glm::ivec3 part(i % kParts, i / kParts % kParts, i / (kParts * kParts));
-      const Sums& of_part = sums[parts_.number(kParts * (grid.cell(cell) + kMargin) + part)];
-      of_cell.length += of_part.length;
-      of_cell.beyond += of_part.beyond;
-      of_cell.before += of_part.before;
-    }
-    const Means of = mean(of_cell, grid.centre(cell));
+    detail::PartSums of_cell;
+    const glm::ivec3 first_part = kParts * (grid.cell(cell) + kMargin);
+    for (int i = 0; i < kParts * kParts * kParts; ++i)
+      of_cell += sums[parts_.number(first_part + glm::ivec3(i % kParts, i / kParts % kParts, i / (kParts * kParts)))];
+    const Means of = mean(of_cell, grid, cell);
     beyond_.push_back(fixedDepth(depthSteps(of.beyond)));
     before_.push_back(fixedDepth(depthSteps(of.before)));
+    if (!with_wood) continue;
+    const auto open = [&](float shaded) {
+      return of_cell.length > 0.f ? std::clamp(1.f - shaded / of_cell.length, 0.f, 1.f) : 1.f;
+    };
+    open_beyond_.push_back(open(of_cell.before_last_wood));
+    open_before_.push_back(open(of_cell.behind_first_wood));
   }
   std::vector<Means> means;
   means.reserve(sums.size());
-  for (std::size_t part = 0; part < sums.size(); ++part) means.push_back(mean(sums[part], parts_.centre(part)));
+  for (std::size_t part = 0; part < sums.size(); ++part) means.push_back(mean(sums[part], parts_, part));
   return means;
 }
 
@@ -377,7 +321,8 @@ void TreeDepths::addTo(const CellGrid& grid, const TreeDepths& receiver, const C
 }
 
 std::size_t TreeDepths::memoryBytes() const {
-  std::size_t bytes = (beyond_.size() + before_.size()) * sizeof(FixedDepth) + cells_.size() * sizeof(glm::vec2);
+  std::size_t bytes = (beyond_.size() + before_.size()) * sizeof(FixedDepth) + cells_.size() * sizeof(glm::vec2) +
+                      (open_beyond_.size() + open_before_.size()) * sizeof(float);
   for (const Picture& picture : pictures_) bytes += picture.thickness.size() * sizeof(FixedDepth);
   for (const std::vector<Depths>& depths : within_) bytes += depths.size() * sizeof(Depths);
   return bytes;

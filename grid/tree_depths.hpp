@@ -23,6 +23,16 @@ class TreeDepths {
   // the cell's volume, sampled by the map's lines through it, exact along each. In steps; for all cells, active or not.
   std::span<const FixedDepth> beyond() const { return beyond_; }
   std::span<const FixedDepth> before() const { return before_; }
+  // (D13) Share of each of its own cells from which the tree's wood does not hide what lies outward along the axis, and
+  // against it [1]. Empty unless the map tells of the last wood.
+  std::span<const float> openBeyond() const { return open_beyond_; }
+  std::span<const float> openBefore() const { return open_before_; }
+  // Number of leaf crossings on the whole line through a point beside the tree, (right, up) of the map [m], the mean
+  // over lines through a cell around it [step].
+  //   receiver_cells  which of `seen_from` that cell is
+  std::uint32_t thickness(std::size_t receiver_cells, glm::vec2 point) const {
+    return pictures_[receiver_cells].at(point);
+  }
   // Adds what this tree, displaced by `displacement` [m] from the tree of `receiver`, puts before the receiver's active
   // cells, `times` times: -1 takes it away again. `receiver` must have the same axes.
   //   grid, receiver_grid  of this tree and of the receiver
@@ -53,6 +63,7 @@ class TreeDepths {
   struct Depths {
     FixedDepth beyond, before;
   };
+  static Picture pictureOf(const DeepOpacityMap& map, float seen_side);
   std::vector<Means> walkLines(const CellGrid& grid, const DeepOpacityMap& map);
   std::vector<Depths> overCells(std::vector<Means> means, float seen_side) const;
   // Means over a cell around a point among the tree's cells or near them, interpolated.
@@ -60,6 +71,7 @@ class TreeDepths {
 
   Axes axes_;
   std::vector<FixedDepth> beyond_, before_;
+  std::vector<float> open_beyond_, open_before_;
   std::vector<Picture> pictures_;               // as seen from each kind of cells
   CellGrid parts_;                              // parts of the cells, and as many around them; all are told of
   std::vector<std::vector<Depths>> within_;     // at the centres of these parts, for each kind of cells

@@ -45,51 +45,82 @@ void addIrradiance(Model model, std::span<const float> projection, std::span<con
 }  // namespace
 
 LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const Progress& progress) {
-  const TreeMesh& mesh = *scene.kinds[0].mesh;
   const auto start = Clock::now();
   LeafGeometry geometry;
-  geometry.projections = leafProjections(mesh, scene.sun().light());
-  geometry.depths = leafDepths(mesh, stand.light(0, 0), scene.stand, progress);
+  std::vector<LitKind> lit;
+  for (std::size_t kind = 0; kind < stand.kinds().size(); ++kind) {
+    const bool stands = stand.kinds()[kind].stands;
+    if (stands) lit.push_back({stand.kinds()[kind].mesh.get(), &stand.light(kind, 0)});
+    geometry.projections.push_back(stands ? leafProjections(*stand.kinds()[kind].mesh, scene.sun().light())
+                                          : std::vector<float>{});
+  }
+  Stand by_kinds = scene.stand;  // of those that stand
+  for (std::size_t tree = 0; tree < by_kinds.trees.size(); ++tree) {
+    const std::size_t kind = stand.kindOf(tree);
+    geometry.kind_of_tree.push_back(kind);
+    geometry.scene_kind_of_tree.push_back(scene.stand.trees[tree].kind);
+    by_kinds.trees[tree].kind = static_cast<std::uint32_t>(
+        std::count_if(stand.kinds().begin(), stand.kinds().begin() + static_cast<std::ptrdiff_t>(kind),
+                      [](const StandKind& before) { return before.stands; }));
+  }
+  geometry.first_leaf.push_back(0);
+  for (const TreeKind& kind : scene.kinds)
+    geometry.first_leaf.push_back(geometry.first_leaf.back() + kind.mesh->leaf_count);
+  geometry.depths = leafDepths(lit, by_kinds, progress);
   geometry.depth_seconds = secondsSince(start);
 
   const auto start_interpolation = Clock::now();
-  const std::vector<glm::vec3> centres = leafCentres(mesh);
-  for (std::size_t tree = 0; tree < scene.stand.trees.size(); ++tree) {
+  std::vector<std::vector<glm::vec3>> centres;
+  for (const StandKind& kind : stand.kinds())
+    centres.push_back(kind.stands ? leafCentres(*kind.mesh) : std::vector<glm::vec3>{});
+  for (std::size_t tree = 0; tree < geometry.kind_of_tree.size(); ++tree) {
+    const std::size_t kind = geometry.kind_of_tree[tree];
     const std::span<const float> of_cells = stand.compensation(tree, 0);
     std::vector<float>& of_leaves = geometry.compensation.emplace_back();
-    of_leaves.reserve(centres.size());
-    for (const glm::vec3& centre : centres) of_leaves.push_back(interpolate(stand.cells(0), of_cells, centre));
+    of_leaves.reserve(centres[kind].size());
+    for (const glm::vec3& centre : centres[kind]) of_leaves.push_back(interpolate(stand.cells(kind), of_cells, centre));
   }
   geometry.compensation_seconds = secondsSince(start_interpolation);
   return geometry;
 }
 
-std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, const LeafOptics& optics) {
-  const std::size_t trees = geometry.depths.size(), leaves = geometry.projections.size();
-  std::vector<float> irradiance(leaves);
-  tbb::parallel_for(std::size_t{0}, (leaves + kBlock - 1) / kBlock, [&](std::size_t block) {
-    const std::size_t first = block * kBlock, count = std::min(kBlock, leaves - first);
-    const auto part = [&](const std::vector<float>& all) { return std::span(all).subspan(first, count); };
-    const std::span<float> sum = std::span(irradiance).subspan(first, count);
-    for (std::size_t tree = 0; tree < trees; ++tree)
-      addIrradiance(model, part(geometry.projections), part(geometry.depths[tree].depth),
-                    part(geometry.depths[tree].thickness), part(geometry.compensation[tree]), optics, sum);
-    for (float& value : sum) value /= static_cast<float>(trees);
-  });
+std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, std::span<const LeafOptics> optics) {
+  std::vector<float> irradiance(geometry.first_leaf.back());
+  for (std::uint32_t kind = 0; kind < optics.size(); ++kind) {
+    const std::size_t begin = geometry.first_leaf[kind], leaves = geometry.first_leaf[kind + 1] - begin;
+    const auto trees = static_cast<float>(std::ranges::count(geometry.scene_kind_of_tree, kind));
+    tbb::parallel_for(std::size_t{0}, (leaves + kBlock - 1) / kBlock, [&](std::size_t block) {
+      const std::size_t first = block * kBlock, count = std::min(kBlock, leaves - first);
+      const auto part = [&](const std::vector<float>& all) { return std::span(all).subspan(first, count); };
+      const std::span<float> sum = std::span(irradiance).subspan(begin + first, count);
+      for (std::size_t tree = 0; tree < geometry.depths.size(); ++tree)
+        if (geometry.scene_kind_of_tree[tree] == kind)
+          addIrradiance(model, part(geometry.projections[geometry.kind_of_tree[tree]]),
+                        part(geometry.depths[tree].depth), part(geometry.depths[tree].thickness),
+                        part(geometry.compensation[tree]), optics[kind], sum);
+      for (float& value : sum) value /= trees;
+    });
+  }
   return irradiance;
 }
 
 LeafDepths meanDepths(const LeafGeometry& geometry) {
-  LeafDepths mean = geometry.depths.front();
-  const auto trees = static_cast<float>(geometry.depths.size());
-  for (std::size_t leaf = 0; leaf < mean.depth.size(); ++leaf) {
-    for (std::size_t tree = 1; tree < geometry.depths.size(); ++tree) {
-      mean.depth[leaf] += geometry.depths[tree].depth[leaf];
-      mean.thickness[leaf] += geometry.depths[tree].thickness[leaf];
+  const std::size_t kinds = geometry.first_leaf.size() - 1, leaves = geometry.first_leaf.back();
+  LeafDepths mean{.depth = std::vector<float>(leaves), .thickness = std::vector<float>(leaves)};
+  std::vector<float> trees(kinds, 0.f);
+  for (std::size_t tree = 0; tree < geometry.depths.size(); ++tree) {
+    const std::uint32_t kind = geometry.scene_kind_of_tree[tree];
+    ++trees[kind];
+    for (std::size_t leaf = 0; leaf < geometry.depths[tree].depth.size(); ++leaf) {
+      mean.depth[geometry.first_leaf[kind] + leaf] += geometry.depths[tree].depth[leaf];
+      mean.thickness[geometry.first_leaf[kind] + leaf] += geometry.depths[tree].thickness[leaf];
     }
-    mean.depth[leaf] /= trees;
-    mean.thickness[leaf] /= trees;
   }
+  for (std::size_t kind = 0; kind < kinds; ++kind)
+    for (std::size_t leaf = geometry.first_leaf[kind]; leaf < geometry.first_leaf[kind + 1]; ++leaf) {
+      mean.depth[leaf] /= trees[kind];
+      mean.thickness[leaf] /= trees[kind];
+    }
   return mean;
 }
 

@@ -13,6 +13,7 @@
 #include "core/leaf_optics.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
+#include "plants/import.hpp"
 #include "render/camera.hpp"
 #include "render/scene_medium.hpp"
 #include "render/scene_sky.hpp"
@@ -20,11 +21,20 @@
 
 namespace sunfleck {
 
+// How to make a prototype again: grown, or read from a file; neither of one that was made by a program.
+struct TreeRecipe {
+  std::string species;  // with its seed
+  std::uint64_t seed = 1;
+  std::filesystem::path file;  // with its rules
+  ImportRules rules;
+};
+
 // A kind of tree: its prototype and its optics.
 struct TreeKind {
   std::string name;    // what the scene's trees call it
-  std::string source;  // what the leaves came from: a file or a species with its seed
-  Dropped dropped;     // triangles of no area that the file held
+  std::string source;  // what the leaves came from, for people: a file or a species with its seed
+  TreeRecipe recipe;
+  Dropped dropped;  // triangles of no area that the file held
   std::shared_ptr<const TreeMesh> mesh;
   BandOptics leaf;
   glm::vec3 wood_reflectance{0.3f};  // Lambertian, per band [1], 0 .. 1
@@ -56,6 +66,7 @@ struct Scene {
   glm::vec3 ground_albedo{0.f};    // Lambertian, per band [1], 0 .. 1; other grounds, per band, in its place:
   std::optional<std::array<RpvGround, kBands>> ground_rpv;
   std::array<std::shared_ptr<const GroundTexture>, kBands> ground_texture;  // of all bands, or none
+  std::string ground_texture_file;                                          // that they were read from
   std::vector<Sun> suns{Sun{}};  // 1 .. kMostSuns; the first is the one that lights the sky
   SceneSky sky;
   std::optional<Camera> camera;  // none: one that shows the whole stand

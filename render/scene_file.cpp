@@ -15,8 +15,10 @@
 #include "render/detail/scene_table.hpp"
 #include "render/detail/toml_file.hpp"
 #include "render/image_file.hpp"
+#include "render/radians.hpp"
 #include "sky/preetham.hpp"
 #include "sky/sky_models.hpp"
+#include "sky/solar_position.hpp"
 
 namespace sunfleck {
 namespace {
@@ -32,12 +34,13 @@ TreeKind kindWith(const LeafOptics& leaf) {
 }
 
 float degrees(detail::SceneTable& table, const std::string& key, double low, double high, const std::string& rule) {
-  return glm::radians(static_cast<float>(table.number(key, 0., low, high, rule)));
+  return radiansOf(table.number(key, 0., low, high, rule));
 }
 
 void growTree(TreeKind& kind, const std::string& species_name, std::uint64_t seed) {
   kind.mesh = std::make_shared<const TreeMesh>(grow(species(species_name), seed));
   kind.source = fmt::format("species {}, seed {}", species_name, seed);
+  kind.recipe = {.species = species_name, .seed = seed, .file = {}, .rules = {}};
   kind.name = species_name;
 }
 
@@ -47,6 +50,7 @@ void importFile(TreeKind& kind, const std::filesystem::path& file, const ImportR
   kind.mesh = std::make_shared<const TreeMesh>(std::move(imported.mesh));
   kind.source = fmt::format("{} (leaf and wood: {})", file.string(), imported.how);
   kind.dropped = imported.dropped;
+  kind.recipe = {.species = {}, .file = file, .rules = rules};
   kind.name = file.stem().string();
 }
 
@@ -94,8 +98,8 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
     throw InvalidInput(scene.origin + ": [tree] has both file and species: must be one of them");
   if (tree.has("file")) {
     ImportRules rules;
-    if (tree.has("leaf")) rules.leaf = {tree.text("leaf", "")};
-    if (tree.has("wood")) rules.wood = {tree.text("wood", "")};
+    if (tree.has("leaf")) rules.leaf = tree.texts("leaf");
+    if (tree.has("wood")) rules.wood = tree.texts("wood");
     rules.scale = static_cast<float>(tree.number("scale", 1., 1e-9, 1e9, "in [1e-9, 1e9]"));
     const std::string up = tree.text("up", "z");
     if (up != "z" && up != "y") throw InvalidInput(scene.origin + ": tree.up = \"" + up + "\": must be \"z\" or \"y\"");
@@ -165,7 +169,7 @@ float degreesOrZero(detail::SceneTable& table, const std::string& where, const c
   const std::string rule = fmt::format("0 or in [{}, {}]", low, high);
   const double value = table.number(key, 0., 0., high, rule);
   require(value == 0. || value >= low, where + "." + key, value, rule);
-  return glm::radians(static_cast<float>(value));
+  return radiansOf(value);
 }
 
 void readCamera(Scene& scene, detail::SceneTable camera) {
@@ -186,10 +190,34 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
   scene.camera = read;
 }
 
+// By date, time and place, in place of angles.
+void placeByMoment(Sun& sun, const std::string& origin, detail::SceneTable& table,
+                   const std::array<const char*, 4>& keys) {
+  for (const char* key : keys)
+    if (!table.has(key))
+      throw InvalidInput(
+          fmt::format("{}: [sun] has no key {}: must have all of {}", origin, key, fmt::join(keys, ", ")));
+  for (const char* key : {"zenith_deg", "azimuth_deg"})
+    if (table.has(key))
+      throw InvalidInput(fmt::format("{}: [sun] has both {} and date: must be one of them", origin, key));
+  const std::string date = table.moment("date"), time = table.moment("time");
+  const SolarPosition stands =
+      solarPosition(utcMoment(date, time, origin + ": sun."),
+                    glm::radians(table.number("latitude_deg", 0., -90., 90., "in [-90, 90]")),
+                    glm::radians(table.number("longitude_deg", 0., -180., 180., "in [-180, 180]")));
+  sun.zenith = static_cast<float>(stands.zenith);
+  sun.azimuth = static_cast<float>(stands.azimuth);
+}
+
 Sun readSun(const std::string& origin, detail::SceneTable table) {
   Sun sun;
-  sun.zenith = degrees(table, "zenith_deg", 0., 180., "in [0, 180]");
-  sun.azimuth = degrees(table, "azimuth_deg", -360., 360., "in [-360, 360]");
+  static constexpr std::array of_moment{"date", "time", "latitude_deg", "longitude_deg"};
+  if (std::ranges::any_of(of_moment, [&](const char* key) { return table.has(key); })) {
+    placeByMoment(sun, origin, table, of_moment);
+  } else {
+    sun.zenith = degrees(table, "zenith_deg", 0., 180., "in [0, 180]");
+    sun.azimuth = degrees(table, "azimuth_deg", -360., 360., "in [-360, 360]");
+  }
   sun.irradiance = table.perBand("irradiance", sun.irradiance, 10.);
   sun.diameter = degreesOrZero(table, origin + ": sun", "diameter_deg", 0.25, 60.);  // as Monte Carlo takes it
   table.done();
@@ -234,9 +262,9 @@ void readSky(Scene& scene, detail::SceneTable sky, const std::filesystem::path& 
   }
   if (read.kind == Kind::image) {
     if (!sky.has("file")) throw InvalidInput(scene.origin + ": [sky] of kind \"image\" has no key file");
-    read.file = sky.text("file", "");
-    ImageSky image = imageSky(readRadiances(folder / read.file),
-                              double{degrees(sky, "rotation_deg", -360., 360., "in [-360, 360]")});
+    read.file = (folder / sky.text("file", "")).string();
+    read.rotation = degrees(sky, "rotation_deg", -360., 360., "in [-360, 360]");
+    ImageSky image = imageSky(readRadiances(read.file), double{read.rotation});
     read.negative_values = image.negative_values;
     read.image = std::make_shared<const SkyMap>(std::move(image.sky));
   }
@@ -281,7 +309,8 @@ void readGround(Scene& scene, detail::SceneTable ground, const std::filesystem::
   } else if (kind == "texture") {
     need("texture");
     const auto size = static_cast<float>(ground.number("texture_size", 1., 1e-3, 1e6, "in [1e-3, 1e6] m"));
-    scene.ground_texture = readTexture(folder / ground.text("texture", ""), size);
+    scene.ground_texture_file = (folder / ground.text("texture", "")).string();
+    scene.ground_texture = readTexture(scene.ground_texture_file, size);
   } else {
     throw InvalidInput(scene.origin + ": ground.kind = \"" + kind + "\": must be lambert, rpv or texture");
   }
@@ -398,7 +427,7 @@ name = "file name"            # what reports call it
 species = "cherry"            # see: sunfleck plant --help
 seed = 1
 # file = "tree.obj"           # .obj or .ply beside the scene file, instead of species
-# leaf = "leaf*"              # materials or groups of the file that are leaves ...
+# leaf = "leaf*"              # materials or groups of the file that are leaves, or a list of such ...
 # wood = "bark*"              # ... and those that are wood; told by their names if not given
                               # A material's map_d (an image of its opacity) cuts the leaves out, for trace alone
 # scale = 1.0                 # metres per unit of the file, above 0
@@ -462,6 +491,10 @@ albedo = 0.0                  # lambert: 0 to 1; 0: no ground
 [sun]
 zenith_deg = 0.0              # 0 overhead, to 180; from 89.9 on it has set and gives no light
 azimuth_deg = 0.0             # where the sun stands, from +x towards +y
+# date = "2003-10-17"         # instead of these, a moment and a place; x is then east, y north, and air does not bend
+# time = "12:30:30-07:00"     # light. In UTC, or with the offset of its zone
+# latitude_deg = 39.74        # north, -90 to 90
+# longitude_deg = -105.18     # east, -180 to 180
 irradiance = 1.0              # of a plane that faces the sun, 0 to 10; 0: no sun. All results are relative to 1
 diameter_deg = 0.0            # of its disc, 0.25 to 60; the real one has 0.533; 0: a point, as which render draws it
 # Several suns, at most 4: a [[sun]] with these keys for each, instead of [sun]. The first is the one that lights a

@@ -24,6 +24,7 @@ struct SceneSky {
   double turbidity = 3.;      // of Preetham's [1]
   bool coloured_sun = false;  // by Preetham's air, at the same luminance
   std::string file{};         // of the image
+  float rotation = 0.f;       // of the image: azimuth of its middle column, from +x towards +y [rad]
   std::shared_ptr<const SkyMap> image{};
   std::size_t negative_values = 0;  // of the image, taken for 0
   bool operator==(const SceneSky&) const = default;

@@ -1,9 +1,12 @@
 #include "render/stand_geometry.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <glm/trigonometric.hpp>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -48,6 +51,23 @@ Kinds kindsOf(const Scene& scene) {
     found.of_trees.push_back(kind);
   }
   return found;
+}
+
+// Cells an eighth as wide as the widest tree, so many that what the trees take from the sky is seen to its end: as far
+// beyond them as they are high, and half as far again.
+GroundGrid groundGrid(const Bounds& leaves, const Scene& scene) {
+  constexpr float kPerTree = 8.f, kAround = 1.5f, kMostCells = 256.f;
+  if (leaves.empty()) return {};
+  float width = 0.f;
+  for (const TreeKind& kind : scene.kinds)
+    width = std::max({width, bounds(*kind.mesh).size().x, bounds(*kind.mesh).size().y});
+  const float around = scene.stand.period ? 0.f : kAround * leaves.size().z;
+  const glm::vec2 extent = scene.stand.period.value_or(glm::vec2(leaves.size()) + 2.f * around);
+  const float side = std::max({width / kPerTree, extent.x / kMostCells, extent.y / kMostCells, 1e-6f});
+  GroundGrid grid{.low = glm::vec2(leaves.low) - around, .height = leaves.low.z};
+  grid.size = glm::clamp(glm::ivec2(glm::ceil(extent / side)), 1, static_cast<int>(kMostCells));
+  grid.cell_size = extent / glm::vec2(grid.size);
+  return grid;
 }
 
 void requireSurfaces(const Scene& scene) {
@@ -103,14 +123,8 @@ void requireModelled(const Scene& scene) {
     for (const LeafOptics& leaf : kind.leaf)
       require(leaf.gloss == 0.f, from + "leaf gloss", leaf.gloss,
               "0 for the models, whose leaves scatter by Lambert's law (trace and render take any)");
-  require(scene.kinds.size() == 1, from + "number of kinds of trees", scene.kinds.size(),
-          "1 for the models' irradiance of leaves (trace, render and voxelize --stand take any)");
   require(stand.trees.size() <= kMostTrees, from + "number of trees in [stand]", stand.trees.size(),
           "at most " + std::to_string(kMostTrees) + " for the models (trace takes any)");
-  for (std::size_t i = 0; i < stand.trees.size(); ++i)
-    require(stand.trees[i].rotation == 0.f, from + "stand.positions: rotation_deg of tree " + std::to_string(i + 1),
-            std::round(glm::degrees(stand.trees[i].rotation) * 1e4f) / 1e4f,
-            "0 for the models' irradiance of leaves (trace and render take any)");
   if (scene.sky.kind != SceneSky::Kind::none || scene.suns.size() != 1 || scene.sun().irradiance != glm::vec3(1.f) ||
       scene.sun().diameter != 0.f)
     throw InvalidInput(from +
@@ -123,7 +137,7 @@ void requireModelled(const Scene& scene) {
 }
 
 GeometryNeeds needsOf(Model model) {
-  return {.compensation = needsCompensation(model)};
+  return {.compensation = needsCompensation(model), .ground_light = needsCompensation(model)};
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort)
@@ -191,6 +205,8 @@ void StandGeometry::updateKinds(const Scene& scene) {
   for (const std::size_t kind : kind_of_tree_) prototypes.push_back(of_kinds_[kind].prototype);
   trees_.update(*foliage_, scene.stand.trees, prototypes);
   foliage_->setPeriod(scene.stand.period);
+  leaves_ = bounds(scene);
+  foliage_->setGround(groundGrid(leaves_, scene));
   of_instances_.resize(foliage_->instances());
   stand_ = scene.stand;
   meshes_ = std::move(meshes);
@@ -211,8 +227,83 @@ void StandGeometry::updateLights(const Scene& scene) {
   }
   foliage_->setLights(directions);
   const std::vector<Direction> samples = foliage_->sampleDirections();
-  foliage_->setSky(shining_.sky ? skyShares(*shining_.sky, samples)
-                                : std::vector<glm::vec3>(samples.size(), glm::vec3(0.f)));
+  const std::vector<glm::vec3> radiance =
+      shining_.sky ? skyShares(*shining_.sky, samples) : std::vector<glm::vec3>(samples.size(), glm::vec3(0.f));
+  foliage_->setSky(radiance);
+  ground_sky_.open = shining_.sky ? glm::vec3(shining_.sky->irradiance()) : glm::vec3(0.f);
+  glm::vec3 level(0.f);
+  for (std::size_t j = 0; j < samples.size(); ++j)
+    level += 4.f * std::numbers::pi_v<float> / static_cast<float>(samples.size()) * std::max(samples[j].z, 0.f) *
+             radiance[j];
+  for (int band = 0; band < kBands; ++band)
+    sky_factor_[band] = level[band] > 0.f ? ground_sky_.open[band] / level[band] : 0.f;
+}
+
+// (D12) The ground sends the light of suns and sky back; that among the trees, in the mean, up to their cells.
+void StandGeometry::updateGround(const Scene& scene, const GeometryNeeds& needs, const Progress& progress) {
+  ground_radiance_ = glm::vec3(0.f);
+  const bool sky = needs.sky_light && shining_.sky;
+  const GroundGrid& grid = ground_sky_.grid = foliage_->ground();
+  if (scene.ground_albedo == glm::vec3(0.f) || grid.size.x == 0 || !(sky || needs.ground_light)) {
+    ground_sky_.irradiance = {};
+    ground_sky_.revision = 0;
+    return;
+  }
+  foliage_->prepareGround(progress);
+  if (ground_sky_.revision != foliage_->groundSkyRevision() || ground_sky_.irradiance.empty()) {
+    ground_irradiance_.clear();
+    for (const glm::vec3& by_samples : foliage_->groundSky()) ground_irradiance_.push_back(sky_factor_ * by_samples);
+    ground_sky_.irradiance = ground_irradiance_;
+    ground_sky_.revision = foliage_->groundSkyRevision();
+  }
+  if (!needs.ground_light) return;
+  glm::dvec3 sum(0.);
+  std::size_t among = 0;
+  for (std::size_t i = 0; i < ground_irradiance_.size(); ++i) {
+    const glm::ivec2 cell(static_cast<int>(i) % grid.size.x, static_cast<int>(i) / grid.size.x);
+    const glm::vec2 centre = grid.low + grid.cell_size * (glm::vec2(cell) + 0.5f);
+    if (centre.x < leaves_.low.x || centre.y < leaves_.low.y || centre.x > leaves_.high.x || centre.y > leaves_.high.y)
+      continue;
+    glm::vec3 irradiance = ground_irradiance_[i];
+    for (std::size_t light = 0; light < lights_.size(); ++light)
+      irradiance += lights_[light].irradiance * -lights_[light].along.z * foliage_->groundShare(light)[i];
+    sum += irradiance;
+    ++among;
+  }
+  if (among > 0)
+    ground_radiance_ =
+        scene.ground_albedo * std::numbers::inv_pi_v<float> * glm::vec3(sum / static_cast<double>(among));
+}
+
+// (D10) Light of the sky and of the ground, whose radiance changes with the sun and its share in the cells does not.
+void StandGeometry::updateEnvironment(std::span<const std::size_t> instances, const GeometryNeeds& needs,
+                                      const Progress& progress) {
+  const bool sky = needs.sky_light && shining_.sky, ground = ground_radiance_ != glm::vec3(0.f);
+  environment_ = sky || ground;
+  if (sky) foliage_->prepareSkyLight(instances, progress);
+  if (ground) foliage_->prepareGroundLight(instances, progress);
+  if (!environment_) return;
+  std::vector<std::size_t> changed;
+  for (const std::size_t i : instances) {
+    OfInstance& of = of_instances_[i];
+    const std::array revisions{sky ? foliage_->skyLightRevision(i) : 0, ground ? foliage_->groundLightRevision(i) : 0};
+    if (of.of_environment == revisions && of.ground_radiance == ground_radiance_) continue;
+    of.of_environment = revisions;
+    of.ground_radiance = ground_radiance_;
+    of.environment.revision = ++composed_;
+    changed.push_back(i);
+  }
+  tbb::parallel_for(std::size_t{0}, changed.size(), [&](std::size_t k) {
+    const std::size_t i = changed[k], prototype = foliage_->prototypeOf(i);
+    const CellGrid& cells = foliage_->cellsMade(prototype);
+    std::vector<glm::vec3>& values = of_instances_[i].environment.values;
+    values.assign(cells.count(), glm::vec3(0.f));
+    for (std::size_t cell = 0; cell < cells.active.size(); ++cell) {
+      glm::vec3& value = values[cells.active[cell]];
+      if (sky) value += foliage_->skyLight(i)[cell];
+      if (ground) value += ground_radiance_ * foliage_->groundLight(i)[cell];
+    }
+  });
 }
 
 void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
@@ -251,19 +342,16 @@ void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
         keep(i, foliage_->compensationRevision(i, light), foliage_->compensation(i, light),
              of_instances_[i].compensation[light]);
   }
-  if (needs.sky_light && shining_.sky) {
-    foliage_->prepareSkyLight(instances, progress);
-    for (const std::size_t i : instances)
-      keep(i, foliage_->skyLightRevision(i), foliage_->skyLight(i), of_instances_[i].sky_light);
-  }
+  updateGround(scene, needs, progress);
+  updateEnvironment(instances, needs, progress);
 }
 
 std::span<const float> StandGeometry::compensation(std::size_t tree, std::size_t light) const {
   return of_instances_[trees_.instance(tree)].compensation[light].values;
 }
 std::span<const glm::vec3> StandGeometry::skyLight(std::size_t tree) const {
-  if (!shining_.sky) return {};
-  return of_instances_[trees_.instance(tree)].sky_light.values;
+  if (!environment_) return {};
+  return of_instances_[trees_.instance(tree)].environment.values;
 }
 
 std::uint64_t StandGeometry::cellsRevision(std::size_t kind) const {
@@ -276,7 +364,7 @@ std::uint64_t StandGeometry::compensationRevision(std::size_t tree, std::size_t 
   return of_instances_[trees_.instance(tree)].compensation[light].revision;
 }
 std::uint64_t StandGeometry::skyLightRevision(std::size_t tree) const {
-  return shining_.sky ? of_instances_[trees_.instance(tree)].sky_light.revision : 0;
+  return environment_ ? of_instances_[trees_.instance(tree)].environment.revision : 0;
 }
 
 std::vector<ProductCost> StandGeometry::lastCosts() const {

@@ -33,9 +33,8 @@ inline constexpr std::size_t kMostKinds = 64;
 // is not Lambert's, with more than kMostDrawnTrees trees or kMostKinds kinds, with a period much shorter than the trees
 // are wide, or with heaps of trees in one place.
 void requireDrawable(const Scene& scene);
-// The same on a scene whose leaves' irradiance the models do not tell: also one of several kinds of trees, or with a
-// rotated one, with more than kMostTrees trees, with glossy leaves, with a sky, or another light than one sun of
-// irradiance 1 that is a point.
+// The same on a scene whose leaves' irradiance the models do not tell: also one with more than kMostTrees trees, with
+// glossy leaves, with a sky, or another light than one sun of irradiance 1 that is a point.
 void requireModelled(const Scene& scene);
 // Throws InvalidInput where masks cut out the scene's leaves: `what` would take their whole triangles.
 void requireWholeLeaves(const Scene& scene, const std::string& what);
@@ -43,7 +42,8 @@ void requireWholeLeaves(const Scene& scene, const std::string& what);
 // What is wanted besides the lights' maps.
 struct GeometryNeeds {
   bool compensation = true;  // G
-  bool sky_light = true;     // where a sky shines
+  bool sky_light = true;     // where a sky shines: of the cells and, where the ground reflects, of the ground
+  bool ground_light = true;  // what the ground sends back to the cells, where it reflects
 };
 GeometryNeeds needsOf(Model model);
 
@@ -52,6 +52,14 @@ struct StandLight {
   std::size_t sun = 0;  // of the scene's
   Direction along{0.f, 0.f, -1.f};
   glm::vec3 irradiance{1.f};  // of a plane that faces it, per band [1]
+};
+
+// (D12) What the ground receives of the sky. Beyond the cells it lies open; with a period they are those of one period.
+struct GroundSky {
+  GroundGrid grid{};
+  std::span<const glm::vec3> irradiance{};  // of each cell, per band [1]; empty where nothing is in the way
+  glm::vec3 open{0.f};                      // of open ground [1]
+  std::uint64_t revision = 0;               // another number whenever the cells' are others
 };
 
 // Trees that share maps and cells: of one kind of the scene, turned alike.
@@ -86,8 +94,11 @@ class StandGeometry {
   // Of all cells of a tree, active or not; of a tree that was not listed as it was before, empty where it never was.
   //   (D5) G [1], 0 .. 1
   std::span<const float> compensation(std::size_t tree, std::size_t light) const;
-  //   (D10) mean radiance of the environment's light, per band [1/sr]; empty where no sky shines
+  //   (D10) mean radiance of the light of sky and ground, per band [1/sr]; empty where there is none, or none is needed
   std::span<const glm::vec3> skyLight(std::size_t tree) const;
+
+  const GroundSky& groundSky() const { return ground_sky_; }
+  glm::vec3 groundRadiance() const { return ground_radiance_; }  // of the ground among the trees, in the mean [1/sr]
 
   // Another number whenever the content is another; 0: there is none.
   std::uint64_t cellsRevision(std::size_t kind) const;
@@ -122,12 +133,16 @@ class StandGeometry {
   };
   struct OfInstance {
     std::array<Cells<float>, kMostSuns> compensation;
-    Cells<glm::vec3> sky_light;
+    Cells<glm::vec3> environment;
+    std::array<std::uint64_t, 2> of_environment{};  // revisions of sky light and ground light
+    glm::vec3 ground_radiance{0.f};
   };
 
   void updateKinds(const Scene& scene);
   void updatePrototypes(const Scene& scene);
   void updateLights(const Scene& scene);
+  void updateGround(const Scene& scene, const GeometryNeeds& needs, const Progress& progress);
+  void updateEnvironment(std::span<const std::size_t> instances, const GeometryNeeds& needs, const Progress& progress);
 
   std::unique_ptr<FoliageStand> foliage_;
   std::vector<Prototype> prototypes_;
@@ -143,6 +158,13 @@ class StandGeometry {
   std::vector<Sun> suns_;
   SunAndSky shining_;
   std::vector<StandLight> lights_;
+  glm::vec3 sky_factor_{0.f};  // from the sky's light on level ground by sample directions to the whole [1]
+  Bounds leaves_;              // about the trees [m]
+  GroundSky ground_sky_;
+  std::vector<glm::vec3> ground_irradiance_;
+  glm::vec3 ground_radiance_{0.f};
+  bool environment_ = false;    // whether the cells have light of sky or ground
+  std::uint64_t composed_ = 0;  // environments so far
 
   std::vector<ProductCost> costs_before_;
   double light_seconds_ = 0., compensation_seconds_ = 0.;

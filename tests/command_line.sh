@@ -233,6 +233,18 @@ refuses "mu0 = 1e-50: must be at least 1e-07" slab --model sppr --batch grazing.
 refuses "nosuch" bench directions nosuch -o dirs
 refuses "whole number, 16 to 50000" bench stand --trees 15 -o dirs
 refuses "must not be empty" bench stand -o ""
+refuses "nosuch" bench pictures nosuch -o dirs
+refuses "must be named once" bench pictures cherry cherry -o dirs
+refuses "whole number, 2 to 65536" bench pictures --samples 1 -o dirs
+refuses "0 or in [0.1, 150] degrees" trace --field-of-view 0.05
+refuses "0 or in [0.1, 150] degrees" trace --field-of-view 151
+refuses "--tone-map" trace --tone-map sepia
+refuses "--place" trace --date 2003-10-17T12:30
+refuses "--date" trace --place 40 -105
+refuses "excludes" trace --date 2003-10-17T12:30 --place 40 -105 --sun-zenith 3
+refuses "must be a day from 1900 to 2100" trace --date 2003-02-29T12:30 --place 40 -105
+refuses "must be a date and a time" trace --date 2003-02-28 --place 40 -105
+refuses "latitude = 91: must be in [-90, 90] degrees" trace --date 2003-10-17T12:30 --place 91 0
 refuses "even" validate cherry --directions 7 -o dirs
 refuses "--frobnicate" tables --frobnicate
 
@@ -433,6 +445,9 @@ does '"absorbed_leaves"' trace leaf.obj --paths 1000 --json
 does '"models"' --json leaf.obj --paths 1000 --no-pictures -o report
 does "wrote" validate leaf.obj --paths 1000 --no-pictures -o report
 does "sky light" validate leaf.obj --paths 1000 --no-pictures -o report --stats
+does "nstreamg" bench pictures leaf.obj -o benches --samples 2 --size 40 30 --field-of-view 40 --quiet
+[ -s benches/picture_bench_leaf.png ] && grep -q "^leaf,sppg," benches/picture_bench.csv || fail "bench pictures: files"
+does "picture 8 x 6" trace leaf.obj --only-picture --samples 4 --size 8 6 --date 2003-10-17T12:30:30-07:00 --place 39.74 -105.18 --field-of-view 90 --picture benches/p.png --tone-map filmic --quiet
 does "cherry" bench stand --trees 16 -o benches --quiet
 does '"move_tree_seconds"' bench stand --trees 16 -o benches --quiet --json
 printf 'v 0 0 0\nv 0 1 0\nv 0 1 1\nusemtl leaf\nf 1 2 3\n' >upright.obj  # the sun does not see it

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/random.hpp"
+#include "render/compare/picture_sheet.hpp"
 #include "render/false_colour.hpp"
 #include "render/tone_mapping.hpp"
 
@@ -99,6 +100,26 @@ TEST(R31_PictureDifference, ShowsWhereItIs) {
   EXPECT_NEAR(relative.values[0], 0.3 / std::sqrt(3.) / 0.2, 1e-5);
   EXPECT_NEAR(relative.values[1], 0.2 / (0.05 * 0.4 / 3.), 1e-3);  // the mean is that of the pixels covered
   EXPECT_EQ(relative.values[2], 0.f);
+}
+
+// Check a sheet of pictures: as the display shows them above their differences, up to the same value; and their table.
+TEST(R31_PictureDifference, SheetsShowPicturesAboveDifferences) {
+  const Image reference = even(30, 20, {"R", "G", "B"}, {0.1f, 0.1f, 0.1f});
+  std::vector<ComparedPicture> pictures{{"far", even(30, 20, {"R", "G", "B", "A"}, {0.3f, 0.3f, 0.3f, 1.f}), {}},
+                                        {"near", even(30, 20, {"R", "G", "B", "A"}, {0.2f, 0.2f, 0.2f, 1.f}), {}}};
+  for (ComparedPicture& of : pictures) of.error = pictureError(of.picture, reference);
+  const Display display(2.f);
+  const Image sheet = pictureSheet(reference, pictures, display);
+  const auto code = [&](int x, int y) { return Display(1.f).code(sheet.values[sheet.at(x, y, 1)]); };
+  constexpr float kRounding = 2e-6f;  // of pow in single precision
+  EXPECT_EQ(sheet.height, 2 * 20 + 4);
+  EXPECT_NEAR(code(10, 10), display.code(0.1f), kRounding);
+  EXPECT_NEAR(code(34 + 10, 10), display.code(0.3f), kRounding);
+  EXPECT_NEAR(code(68 + 10, 10), display.code(0.2f), kRounding);
+  EXPECT_EQ(code(10, 24 + 10), 0.f);
+  EXPECT_NEAR(code(34 + 10, 24 + 10), falseColour(1.f).y, kRounding);
+  EXPECT_NEAR(code(68 + 10, 24 + 10), falseColour(0.5f).y, 1e-5f);  // half, to a rounding of 0.2 and 0.1
+  EXPECT_EQ(pictureErrorRows("scene", {pictures[1]}), "scene,near,1,0,1,0,1\n");
 }
 
 // Check false colours as a PNG shows them, and the bar: the picture stays, the bar runs from the lowest colour below to

@@ -16,6 +16,7 @@
 #include "sky/preetham.hpp"
 #include "sky/sky_models.hpp"
 #include "sky/sky_sampler.hpp"
+#include "sky/sky_shares.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -242,6 +243,38 @@ TEST(R17_Sky, HashTellsSkiesApart) {
 
 // Check that the density integrates to 1, tells the samples' own, and is proportional to the weighted radiance times
 // the measure. The midpoint rule's steps do not end where the cells of the patches do: 1e-3.
+// Check what directions see of an even sky: its radiance, all of them, but for those that do not point up.
+TEST(R28_SkyShares, OfAnEvenSkyAreEven) {
+  std::vector<Direction> directions = spreadAxes(11);
+  for (std::size_t i = 0; i < 11; ++i) directions.push_back(-directions[i]);
+  const std::vector<glm::vec3> shares = skyShares(uniformSky({kPi, 2. * kPi, 0.}), directions);
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    for (int band = 0; band < 3; ++band)
+      EXPECT_NEAR(shares[i][band],
+                  directions[i].z > 0.f ? std::array{1.f, 2.f, 0.f}[static_cast<std::size_t>(band)] : 0.f, 1e-6f);
+}
+
+// Check that a spot much smaller than what a direction stands for is seen by that direction with all of its light, and
+// by no other; the mean of all is that of the sky. 1e-5: sums of 32,400 cells in double precision of floats.
+TEST(R28_SkyShares, HoldTheLightOfASpot) {
+  std::vector<glm::vec3> radiance(180 * 360, glm::vec3(0.f));
+  radiance[50 * 360 + 40] = {1000.f, 500.f, 0.f};
+  const SkyMap sky(180, 360, 0.f, std::move(radiance));
+  std::vector<Direction> directions = spreadAxes(11);
+  for (Direction& direction : directions)
+    if (direction.z < 0.f) direction = -direction;
+  const std::vector<glm::vec3> shares = skyShares(sky, directions);
+  const double zenith = 50.5 * 0.5 * kPi / 180., azimuth = 40.5 * 2. * kPi / 360.;
+  const Direction spot = -sunlight(static_cast<float>(zenith), static_cast<float>(azimuth));
+  std::size_t nearest = 0;
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    if (glm::dot(directions[i], spot) > glm::dot(directions[nearest], spot)) nearest = i;
+  const glm::dvec3 whole = integral(sky, SkyMeasure::solid_angle);
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    EXPECT_NEAR(shares[i].x, i == nearest ? whole.x * 11. / (2. * kPi) : 0., 1e-5 * whole.x);
+  EXPECT_NEAR(shares[nearest].y, 0.5 * double{shares[nearest].x}, 1e-5);
+}
+
 TEST(R18_SkySampler, DensityIntegratesToOne) {
   const glm::dvec3 weights{0.2, 0.5, 0.3};
   const SkyMap maps[] = {patches(), preethamSky(0.7, 2., 3.).sky, overcastSky(glm::dvec3(1.)),

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/random.hpp"
+#include "core/require.hpp"
 #include "grid/foliage_stand.hpp"
 #include "render/compare/log_plot.hpp"
 #include "render/stand_geometry.hpp"
@@ -36,8 +37,8 @@ std::vector<float> compensationBy(const Scene& scene, const std::vector<Directio
                       .sample_resolution = effort.sample_resolution,
                       .light_resolution = effort.light_resolution,
                       .cells = effort.cells});
-  stand.addPrototype(scene.kinds[0].mesh);
-  for (const Placement& tree : scene.stand.trees) stand.add(0, tree.position);
+  for (const TreeKind& kind : scene.kinds) stand.addPrototype(kind.mesh);
+  for (const Placement& tree : scene.stand.trees) stand.add(tree.kind, tree.position);
   stand.setPeriod(scene.stand.period);
   const Direction sun = scene.sun().light();
   stand.setLights(std::span(&sun, 1));
@@ -51,6 +52,8 @@ std::vector<float> compensationBy(const Scene& scene, const std::vector<Directio
 
 std::vector<DirectionBenchPoint> benchDirections(const Scene& scene, std::uint64_t seed, const Progress& progress) {
   requireModelled(scene);
+  for (const Placement& tree : scene.stand.trees)
+    require(tree.rotation == 0.f, "rotation of a tree [rad]", tree.rotation, "0: the directions are turned instead");
   using Clock = std::chrono::steady_clock;
   const std::vector<float> exact = compensationBy(scene, spreadAxes(kReference / 2));
 

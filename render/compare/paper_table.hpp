@@ -11,7 +11,7 @@ namespace sunfleck {
 // the sun overhead. Nothing when the validation is of leaves of another albedo, another sun, or neither one tree nor a
 // periodic stand. The paper's cherry is not ours.
 inline std::optional<double> paperError(const Validation& v, Model model) {
-  const bool alike = std::abs(v.optics().albedo() - 0.95f) < 0.005f && v.scene.sun().zenith < 0.01f;
+  const bool alike = std::abs(v.albedo() - 0.95) < 0.005 && v.scene.sun().zenith < 0.01f;
   if (!alike || v.scene.stand.trees.size() > 1) return std::nullopt;
   const bool periodic = v.scene.stand.period.has_value();
   switch (model) {

@@ -89,6 +89,22 @@ void requireValidatable(const Scene& scene, int band) {
           "0 for validation: the models know no ground");
 }
 
+std::vector<LeafOptics> Validation::optics() const {
+  std::vector<LeafOptics> of_kinds;
+  for (const TreeKind& kind : scene.kinds) of_kinds.push_back(kind.leaf[static_cast<std::size_t>(effort.band)]);
+  return of_kinds;
+}
+
+double Validation::albedo() const {
+  double sum = 0., area = 0.;
+  for (const TreeKind& kind : scene.kinds) {
+    const double of_kind = leafArea(*kind.mesh);
+    sum += of_kind * double{kind.leaf[static_cast<std::size_t>(effort.band)].albedo()};
+    area += of_kind;
+  }
+  return sum / area;
+}
+
 Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
                     const Progress& progress) {
   requireValidatable(scene, effort.band);
@@ -98,14 +114,18 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
   result.depths = meanDepths(geometry);
   result.mean_depth = mean(result.depths.depth);
   result.mean_thickness = mean(result.depths.thickness);
-  result.leaf_area = leafArea(*scene.kinds[0].mesh);
+  for (const TreeKind& kind : scene.kinds) {
+    result.leaves += kind.mesh->leaf_count;
+    result.leaf_triangles += kind.mesh->leaf_triangles.size();
+    result.leaf_area += leafArea(*kind.mesh);
+  }
 
   const RayScene rays(meshes(scene), scene.stand, effort.with_wood);
   result.reference = traceForward(rays, traceLight(scene, band), effort.trace, progress);
   result.reference_noise = referenceNoise(result.reference.leaf_irradiance, result.reference.leaf_standard_error);
 
   result.categories = categories(result.depths);
-  result.leaves_left_out = scene.kinds[0].mesh->leaf_count;
+  result.leaves_left_out = result.leaves;
   for (const Category& category : result.categories) result.leaves_left_out -= category.leaves.size();
   result.category_noise = categoryNoise(result.reference, result.categories);
 

@@ -33,7 +33,8 @@ struct Validation {
   ValidationEffort effort;
   LeafDepths depths;                            // mean over the stand's trees
   double mean_depth = 0., mean_thickness = 0.;  // over leaves [1]
-  double leaf_area = 0.;                        // one-sided, of the prototype [m^2]
+  std::size_t leaves = 0, leaf_triangles = 0;   // of the prototypes
+  double leaf_area = 0.;                        // one-sided, of the prototypes [m^2]
   ForwardResult reference;
   std::optional<double> reference_noise;  // see referenceNoise()
   // Expected rms_weighted of a perfect model, from the reference's standard errors; nothing when all is dark.
@@ -42,7 +43,8 @@ struct Validation {
   std::size_t leaves_left_out = 0;  // in categories of fewer than 5
   std::vector<ModelResult> models;
 
-  LeafOptics optics() const { return scene.kinds[0].leaf[static_cast<std::size_t>(effort.band)]; }
+  std::vector<LeafOptics> optics() const;  // of each kind of tree
+  double albedo() const;                   // of their leaves, the mean over their area [1]
 };
 
 // The scene's sun, sky, leaves, wood, media and ground in these bands, for Monte Carlo. Throws InvalidInput as

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <glm/trigonometric.hpp>
 #include <set>
 #include <sstream>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include "core/require.hpp"
 #include "core/stand.hpp"
+#include "render/radians.hpp"
 #include "render/scene.hpp"
 
 namespace sunfleck::detail {
@@ -56,6 +56,21 @@ class SceneTable {
     if (!node) return fallback;
     if (!node->is_string()) refuse(*node, key, "a text in quotes");
     return *node->value<std::string>();
+  }
+
+  // A text, or what TOML knows as a date or a time.
+  std::string moment(const std::string& key) {
+    const toml::node* node = take(key);
+    if (node->is_string()) return *node->value<std::string>();
+    std::ostringstream text;
+    if (const auto* date = node->as_date()) {
+      text << date->get();
+    } else if (const auto* time = node->as_time()) {
+      text << time->get();
+    } else {
+      refuse(*node, key, "a text in quotes");
+    }
+    return text.str();
   }
 
   // A list of exactly `count` numbers.
@@ -144,11 +159,11 @@ class SceneTable {
       const bool named = !row.empty() && row.back().is_string();
       const std::size_t length = row.size() - (named ? 1 : 0);
       if (length != 2 && length != 3) refuse(item, key, rule);
-      std::vector<float> v;
-      for (std::size_t i = 0; i < length; ++i)
-        v.push_back(static_cast<float>(checked(*row.get(i), key, -1e6, 1e6, rule)));
-      Placement& tree = trees.emplace_back(Placement{.position = {v[0], v[1], 0.f}});
-      if (length == 3) tree.rotation = glm::radians(v[2]);
+      std::vector<double> v;
+      for (std::size_t i = 0; i < length; ++i) v.push_back(checked(*row.get(i), key, -1e6, 1e6, rule));
+      Placement& tree =
+          trees.emplace_back(Placement{.position = {static_cast<float>(v[0]), static_cast<float>(v[1]), 0.f}});
+      if (length == 3) tree.rotation = radiansOf(v[2]);
       tree.kind =
           named ? kindNamed(row.back(), key, kinds) : static_cast<std::uint32_t>((trees.size() - 1) % kinds.size());
     }

@@ -74,10 +74,18 @@ EGLDisplay sharedDisplay() {
 
 struct Context::State {
   EGLDisplay display = EGL_NO_DISPLAY;
-  EGLContext context = EGL_NO_CONTEXT;  // its own, if it has one
+  EGLContext context = EGL_NO_CONTEXT;
   std::string first_error;
+  std::size_t messages = 0;
 
-  State() : display(sharedDisplay()) {
+  explicit State(Of of) {
+    if (of == Of::its_own)
+      makeOwn();
+    else if (epoxy_gl_version() < 45 || !epoxy_is_desktop_gl())
+      unavailable("the window's is " + std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))));
+  }
+  void makeOwn() {
+    display = sharedDisplay();
     if (!eglBindAPI(EGL_OPENGL_API)) unavailable("EGL has no desktop OpenGL");
     if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context"))
       unavailable("EGL cannot draw without a surface (EGL_KHR_surfaceless_context)");
@@ -102,11 +110,6 @@ struct Context::State {
       unavailable(reason);
     }
   }
-  explicit State(Adopt) {
-    constexpr int kNeeded = 45;
-    if (const int version = epoxy_gl_version(); version < kNeeded)
-      unavailable("the window has " + std::to_string(version / 10) + "." + std::to_string(version % 10));
-  }
   ~State() {
     if (context == EGL_NO_CONTEXT) return;
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -116,18 +119,12 @@ struct Context::State {
   State& operator=(const State&) = delete;
 };
 
-Context::Context() : state_(std::make_unique<State>()) {
-  listen();
-}
-
-Context::Context(Adopt adopt) : state_(std::make_unique<State>(adopt)) {
-  listen();
-}
-
-void Context::listen() {
+Context::Context(Of context) : state_(std::make_unique<State>(context)) {
   // The driver calls this from C: it must not throw, so the error waits for requireNoError.
-  const auto remember = [](GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message, const void* user) {
+  const auto remember = [](GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* message,
+                           const void* user) {
     State& state = *static_cast<State*>(const_cast<void*>(user));
+    if (severity != GL_DEBUG_SEVERITY_NOTIFICATION) ++state.messages;
     if (type == GL_DEBUG_TYPE_ERROR && state.first_error.empty()) state.first_error = message;
   };
   glEnable(GL_DEBUG_OUTPUT);
@@ -137,6 +134,10 @@ void Context::listen() {
 
 Context::~Context() {
   glDebugMessageCallback(nullptr, nullptr);
+}
+
+std::size_t Context::messages() const {
+  return state_->messages;
 }
 
 std::string Context::renderer() const {

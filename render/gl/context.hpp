@@ -1,29 +1,30 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
 namespace sunfleck::gl {
 
-// An OpenGL 4.5 core context, current on the thread that made it until it is destroyed. Throws std::runtime_error with
-// one line when the machine offers none.
+// An OpenGL 4.5 core context, current on the thread that made it until it is destroyed: one without a window or a
+// display, or one that a window has made current and keeps. Throws std::runtime_error with one line that names what is
+// needed when the machine offers none.
 class Context {
  public:
-  Context();  // without a window or a display
-  // The one that is current, such as a window's; its owner keeps it.
-  enum class Adopt { current };
-  explicit Context(Adopt);
+  enum class Of { its_own, the_current };
+  explicit Context(Of context = Of::its_own);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
   std::string renderer() const;  // what draws, as the driver names it
+  // Warnings of the driver and what it calls worth knowing, since this was made; notifications are not counted.
+  std::size_t messages() const;
   // Throws std::runtime_error with the first error the driver has reported since the last call, if any.
   //   work  what was being done, for the message
   void requireNoError(const std::string& work) const;
 
  private:
-  void listen();  // to what the driver reports
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -97,6 +97,12 @@ void FrameTarget::setVisible(std::span<const glm::uvec2> ids) {
   glTextureSubImage2D(visible_.get(), 0, 0, 0, size_.x, size_.y, GL_RG_INTEGER, GL_UNSIGNED_INT, ids.data());
 }
 
+glm::uvec2 FrameTarget::visibleAt(glm::ivec2 pixel) const {
+  glm::uvec2 id(0u);
+  glGetTextureSubImage(visible_.get(), 0, pixel.x, pixel.y, 0, 1, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, sizeof id, &id);
+  return id;
+}
+
 void FrameTarget::beginShading(bool accumulate) {
   samples_ = accumulate ? samples_ + 1 : 1;
   glBindFramebuffer(GL_FRAMEBUFFER, shading_target_.get());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <optional>
@@ -23,6 +24,8 @@ enum class Layer {
   ids,       // drawn tree or kGround or kNone, its triangle, its kind, its leaf; bits of whole numbers
 };
 inline constexpr int kLayers = 8;
+inline constexpr std::array kLayersBesideTotal{Layer::direct,   Layer::single,  Layer::multiple, Layer::sky,
+                                               Layer::geometry, Layer::foliage, Layer::ids};
 
 // The textures that frames are drawn into, in the current context.
 class FrameTarget {
@@ -39,6 +42,9 @@ class FrameTarget {
   // Four numbers for each pixel, rows from bottom to top. Radiances are divided by the samples.
   std::vector<float> read(Layer layer) const;
   std::vector<std::uint32_t> readIds() const;
+
+  // What is seen at a pixel, from the lower left: drawn tree (or kNone: none, the ground may be seen) and triangle.
+  glm::uvec2 visibleAt(glm::ivec2 pixel) const;
 
   // For drawing: triangles that are seen, as pairs of drawn tree and triangle.
   void beginVisible() const;

@@ -118,14 +118,16 @@ std::size_t StandData::updateTrees(const DrawnStand& stand) {
   std::vector<DrawnData> drawn;
   for (Kind& kind : kinds_) kind.drawn.clear();
   box_ = {};
+  seen_.clear();
   for (const glm::vec3& shift : copies(stand, glm::ivec2(1)))
-    for (const DrawnTree& tree : stand.trees) {
+    for (std::uint32_t number = 0; number < stand.trees.size(); ++number) {
+      const DrawnTree& tree = stand.trees[number];
+      seen_.push_back({.tree = number, .kind = tree.kind, .position = tree.position + shift});
       drawn.push_back({.position = tree.position + shift, .number = static_cast<std::uint32_t>(drawn.size())});
       kinds_[tree.kind].drawn.push_back(drawn.back());
       if (!kinds_[tree.kind].levels.box.empty())
         box_.include(moved(kinds_[tree.kind].levels.box, drawn.back().position));
     }
-  drawn_count_ = drawn.size();
   trees_.emplace(trees);
   drawn_.emplace(drawn);
   return trees.size() * sizeof trees[0] + drawn.size() * sizeof drawn[0];

@@ -51,7 +51,13 @@ class StandData {
   const std::vector<Kind>& kinds() const { return kinds_; }
   const std::vector<TreeKind>& treeKinds() const { return tree_kinds_; }
   const std::vector<DrawnLight>& lights() const { return lights_; }
-  std::size_t drawnTrees() const { return drawn_count_; }
+  // A drawn tree by its number.
+  struct Seen {
+    std::uint32_t tree = 0, kind = 0;
+    glm::vec3 position{0.f};  // [m]
+  };
+  Seen seen(std::uint32_t drawn) const { return seen_[drawn]; }
+  std::size_t drawnTrees() const { return seen_.size(); }
   Bounds box() const { return box_; }  // of all that is drawn but the ground [m]
   const GroundDisc& ground() const { return ground_; }
 
@@ -70,7 +76,7 @@ class StandData {
   SkyTexture sky_;
   BufferTexture triangles_, light_cells_, light_casters_;
   std::optional<Buffer> trees_, drawn_, kind_frames_;
-  std::size_t drawn_count_ = 0;
+  std::vector<Seen> seen_;
   Bounds box_;
   GroundDisc ground_;
   detail::FrameData frame_;

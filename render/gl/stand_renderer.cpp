@@ -162,6 +162,29 @@ FrameCost StandRenderer::draw(const View& view, FrameTarget& target, std::span<c
   return shade(view, target, {});
 }
 
+std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const FrameTarget& target) const {
+  const glm::vec2 place = glm::vec2(view.low + pixel) + 0.5f + view.offset;
+  const Sight look = sightThrough(view.camera, {place.x, static_cast<float>(view.camera.height) - place.y});
+  const glm::uvec2 id = target.visibleAt(pixel);
+  if (id.x >= kGround) {
+    const GroundDisc& ground = data_.ground();
+    const float away = (ground.centre.z - look.from.z) / look.along.z;
+    const glm::vec3 there = look.from + away * look.along;
+    const bool seen = data_.frame().ground_albedo.w > 0.f && look.along.z < 0.f &&
+                      (away > 0.f || !view.camera.perspective()) &&
+                      glm::distance(there, ground.centre) < ground.radius;
+    return seen ? std::optional<Pick>({.tree = {}, .leaf = {}, .place = there}) : std::nullopt;
+  }
+  const StandData::Seen seen = data_.seen(id.x);
+  const TriangleData& triangle = data_.kinds()[seen.kind].levels.triangles[id.y];
+  const glm::vec3 normal = glm::normalize(glm::vec3(triangle.plane));
+  const float away =
+      (triangle.plane.w - glm::dot(normal, look.from - seen.position)) / glm::dot(normal, look.along);
+  Pick pick{.tree = seen.tree, .leaf = {}, .place = look.from + away * look.along};
+  if (triangle.leaf < TriangleData::kThinWood) pick.leaf = triangle.leaf;
+  return pick;
+}
+
 FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost cost) {
   cost.shading_seconds = secondsOf(timed_, [&] {
     target.beginShading(view.accumulate);

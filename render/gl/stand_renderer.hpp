@@ -20,6 +20,13 @@ struct FrameCost {
   double visible_seconds = 0., shading_seconds = 0.;  // 0 where it was not timed
 };
 
+// What is seen at a place of the picture.
+struct Pick {
+  std::optional<std::uint32_t> tree;  // of the stand; a copy in another period counts as the tree
+  std::optional<std::uint32_t> leaf;  // of its kind; none for wood and ground
+  glm::vec3 place{0.f};               // where the line of sight meets it [m]
+};
+
 // (R24) A stand on the GPU, seen by any camera and shaded by any model: what each pixel shows is found first, then every
 // pixel is shaded once. A `context` must be current wherever it is used, and outlive it.
 class StandRenderer {
@@ -37,6 +44,8 @@ class StandRenderer {
   FrameCost draw(const View& view, FrameTarget& target);
   // The same with what is seen told, as pairs of drawn tree and triangle, rows from bottom to top: kNone, kGround.
   FrameCost draw(const View& view, FrameTarget& target, std::span<const glm::uvec2> visible);
+  // What the target shows at a pixel, from the lower left, after a frame of that view; none where it is the sky.
+  std::optional<Pick> at(glm::ivec2 pixel, const View& view, const FrameTarget& target) const;
   // Waits for the graphics card around each pass, so that costs tell times; slower.
   void timePasses(bool on) { timed_ = on; }
 

@@ -1,0 +1,288 @@
+#include "render/scene_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "core/require.hpp"
+#include "core/whole_file.hpp"
+#include "render/radians.hpp"
+
+namespace sunfleck {
+namespace fs = std::filesystem;
+namespace {
+
+// The shortest decimal number for which `same` holds of what it is read as.
+template <typename Same>
+std::string shortest(double value, const Same& same) {
+  constexpr int kAllDigits = 17;
+  for (int digits = 1; digits <= kAllDigits; ++digits)
+    if (std::string text = fmt::format("{:.{}g}", value, digits); same(std::strtod(text.c_str(), nullptr)))
+      return text == "-0" ? "-0.0" : text;  // TOML's whole numbers have no -0
+  throw InvalidInput(fmt::format("number in a scene = {}: must be finite", value));
+}
+
+std::string number(float value) {
+  return shortest(double{value}, [&](double read) { return static_cast<float>(read) == value; });
+}
+std::string number(double value) {
+  return shortest(value, [&](double read) { return read == value; });
+}
+// Of an angle [rad], the degrees that lead to it, within +-360 where it is beyond.
+std::string degrees(float angle) {
+  constexpr double kTurn = 2. * std::numbers::pi;
+  if (std::abs(angle) > static_cast<float>(kTurn)) angle = static_cast<float>(std::fmod(double{angle}, kTurn));
+  return shortest(double{angle} * (180. / std::numbers::pi), [&](double read) { return radiansOf(read) == angle; });
+}
+
+std::string list(std::span<const float> values) {
+  std::string text;
+  for (const float value : values) text += (text.empty() ? "[" : ", ") + number(value);
+  return text + "]";
+}
+std::string list(const glm::vec3& v) {
+  return list(std::array{v.x, v.y, v.z});
+}
+std::string perBand(const glm::vec3& bands) {
+  return bands.x == bands.y && bands.y == bands.z ? number(bands.x) : list(bands);
+}
+
+// A TOML basic string.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\')
+      result += std::string("\\") + c;
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      result += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+    else
+      result += c;
+  }
+  return result + "\"";
+}
+
+std::string texts(const std::vector<std::string>& all) {
+  if (all.size() == 1) return quoted(all.front());
+  std::string list;
+  for (const std::string& text : all) list += (list.empty() ? "[" : ", ") + quoted(text);
+  return list + "]";
+}
+
+class Writer {
+ public:
+  Writer(const Scene& scene, const fs::path& folder)
+      : scene_(scene), folder_(fs::weakly_canonical(fs::absolute(folder))) {}
+
+  std::string text() {
+    key("name", quoted(scene_.name));
+    std::vector<char> stands(scene_.kinds.size());
+    for (const Placement& tree : scene_.stand.trees) stands[tree.kind] = true;
+    const bool treeless =
+        scene_.stand.trees.empty() || scene_.kinds[scene_.stand.trees.front().kind].mesh->leaf_count == 0;
+    if (treeless && scene_.media.empty()) refuse("has neither trees nor media");
+    if (treeless) writeOptics(scene_.kinds.front());
+    for (std::size_t kind = 0; !treeless && kind < scene_.kinds.size(); ++kind)
+      if (stands[kind]) writeTree(scene_.kinds[kind], std::ranges::count(stands, 1) > 1);
+    for (const SceneMedium& medium : scene_.media) writeMedium(medium);
+    writeStand(treeless);
+    writeGround();
+    for (const Sun& sun : scene_.suns) writeSun(sun);
+    writeSky();
+    if (scene_.camera) writeCamera(*scene_.camera);
+    return std::move(text_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw InvalidInput(fmt::format("scene \"{}\": {}: cannot be written as a scene file", scene_.name, why));
+  }
+  void table(const std::string& name, bool of_several = false) {
+    text_ += of_several ? fmt::format("\n[[{}]]\n", name) : fmt::format("\n[{}]\n", name);
+  }
+  void key(const std::string& name, const std::string& value) { text_ += name + " = " + value + "\n"; }
+  std::string path(const fs::path& file) const {
+    const fs::path there = fs::weakly_canonical(fs::absolute(file)), from_here = there.lexically_relative(folder_);
+    return quoted((from_here.empty() ? there : from_here).generic_string());
+  }
+
+  // Keys of leaves and wood, alone or each with the first of these before it.
+  void writeLeaf(const TreeKind& kind, const std::string& prefix) {
+    glm::vec3 reflectance, transmittance, gloss;
+    for (std::size_t band = 0; band < kBands; ++band) {
+      const int b = static_cast<int>(band);
+      reflectance[b] = kind.leaf[band].reflectance;
+      transmittance[b] = kind.leaf[band].transmittance;
+      gloss[b] = kind.leaf[band].gloss;
+    }
+    key(prefix + "reflectance", perBand(reflectance));
+    key(prefix + "transmittance", perBand(transmittance));
+    key(prefix + "gloss", perBand(gloss));
+    key(prefix + "gloss_roughness", number(kind.leaf[0].gloss_roughness));
+  }
+
+  void writeOptics(const TreeKind& kind) {
+    table("leaf");
+    writeLeaf(kind, "");
+    table("wood");
+    key("reflectance", perBand(kind.wood_reflectance));
+  }
+
+  void writeTree(const TreeKind& kind, bool of_several) {
+    table("tree", of_several);
+    const TreeRecipe& recipe = kind.recipe;
+    if (!recipe.species.empty()) {
+      key("species", quoted(recipe.species));
+      key("seed", std::to_string(recipe.seed));
+    } else if (!recipe.file.empty()) {
+      key("file", path(recipe.file));
+      if (!recipe.rules.leaf.empty()) key("leaf", texts(recipe.rules.leaf));
+      if (!recipe.rules.wood.empty()) key("wood", texts(recipe.rules.wood));
+      key("scale", number(recipe.rules.scale));
+      key("up", recipe.rules.up == ImportRules::Up::y ? "\"y\"" : "\"z\"");
+    } else {
+      refuse(fmt::format("its trees \"{}\" came from no species and no file", kind.name));
+    }
+    key("name", quoted(kind.name));
+    writeLeaf(kind, "leaf_");
+    key("wood_reflectance", perBand(kind.wood_reflectance));
+  }
+
+  void writeMedium(const SceneMedium& medium) {
+    table("medium", scene_.media.size() > 1);
+    key("kind", medium.particles ? "\"particles\"" : "\"leaves\"");
+    if (medium.grid) {
+      if (medium.source.empty()) refuse("the cells of a medium came from no file");
+      key("file", path(medium.source));
+      key("scale", number(medium.density));
+    } else {
+      key(medium.particles ? "extinction" : "density", number(medium.density));
+      if (std::isfinite(medium.box.low.x)) {
+        std::array<float, 6> corners{};
+        for (int axis = 0; axis < 3; ++axis) {
+          corners[static_cast<std::size_t>(axis)] = medium.box.low[axis];
+          corners[static_cast<std::size_t>(axis) + 3] = medium.box.high[axis];
+        }
+        key("box", list(corners));
+      } else {
+        key("bottom", number(medium.box.low.z));
+        key("top", number(medium.box.high.z));
+      }
+    }
+    glm::vec3 reflectance, transmittance;
+    for (std::size_t band = 0; band < kBands; ++band) {
+      reflectance[static_cast<int>(band)] = medium.optics[band].reflectance;
+      transmittance[static_cast<int>(band)] = medium.optics[band].transmittance;
+    }
+    if (medium.particles) {
+      key("albedo", perBand(reflectance));
+      key("asymmetry", number(medium.asymmetry));
+      return;
+    }
+    key("reflectance", perBand(reflectance));
+    key("transmittance", perBand(transmittance));
+    if (!medium.angles.empty()) key("angles", quoted(medium.angles));
+  }
+
+  void writeStand(bool treeless) {
+    table("stand");
+    const Stand& stand = scene_.stand;
+    key("kind", stand.period ? "\"periodic\"" : treeless ? "\"single\"" : "\"positions\"");
+    if (stand.period) key("period", list(std::array{stand.period->x, stand.period->y}));
+    if (treeless) return;
+    text_ += "positions = [\n";
+    for (const Placement& tree : stand.trees) {
+      if (tree.position.z != 0.f) refuse("a tree stands above or below the ground");
+      text_ += fmt::format("  [{}, {}", number(tree.position.x), number(tree.position.y));
+      if (tree.rotation != 0.f) text_ += ", " + degrees(tree.rotation);
+      text_ += ", " + quoted(scene_.kindOf(tree).name) + "],\n";
+    }
+    text_ += "]\n";
+  }
+
+  void writeGround() {
+    table("ground");
+    if (scene_.ground_rpv) {
+      key("kind", "\"rpv\"");
+      std::string rows;
+      for (const RpvGround& band : *scene_.ground_rpv)
+        rows += (rows.empty() ? "[" : ", ") + list(std::array{band.rho0, band.k, band.theta, band.rho_c});
+      key("rpv", rows + "]");
+    } else if (scene_.ground_texture[0]) {
+      if (scene_.ground_texture_file.empty()) refuse("the texture of its ground came from no file");
+      key("kind", "\"texture\"");
+      key("texture", path(scene_.ground_texture_file));
+      key("texture_size", number(scene_.ground_texture[0]->size));
+    } else {
+      key("kind", "\"lambert\"");
+      key("albedo", perBand(scene_.ground_albedo));
+    }
+  }
+
+  void writeSun(const Sun& sun) {
+    table("sun", scene_.suns.size() > 1);
+    key("zenith_deg", degrees(sun.zenith));
+    key("azimuth_deg", degrees(sun.azimuth));
+    key("irradiance", perBand(sun.irradiance));
+    key("diameter_deg", degrees(sun.diameter));
+  }
+
+  void writeSky() {
+    using Kind = SceneSky::Kind;
+    const SceneSky& sky = scene_.sky;
+    table("sky");
+    constexpr std::array names{"none", "uniform", "overcast", "preetham", "image"};
+    key("kind", quoted(names[static_cast<std::size_t>(sky.kind)]));
+    // A list is of colours, a number keeps the sky's own.
+    if (sky.kind != Kind::none && sky.irradiance) {
+      const glm::vec3 irradiance(*sky.irradiance);
+      key("irradiance", sky.own_colours ? number(irradiance.x) : list(irradiance));
+    }
+    if (sky.kind == Kind::preetham) {
+      key("turbidity", number(sky.turbidity));
+      key("coloured_sun", sky.coloured_sun ? "true" : "false");
+    }
+    if (sky.kind == Kind::image) {
+      if (sky.file.empty()) refuse("its sky came from no file");
+      key("file", path(sky.file));
+      key("rotation_deg", degrees(sky.rotation));
+    }
+  }
+
+  void writeCamera(const Camera& camera) {
+    table("camera");
+    key("target", list(camera.target));
+    key("elevation_deg", degrees(camera.elevation));
+    key("azimuth_deg", degrees(camera.azimuth));
+    key("half_width", number(camera.half_width));
+    key("field_of_view_deg", degrees(camera.field_of_view));
+    key("width", std::to_string(camera.width));
+    key("height", std::to_string(camera.height));
+  }
+
+  const Scene& scene_;
+  fs::path folder_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string sceneText(const Scene& scene, const fs::path& folder) {
+  return Writer(scene, folder).text();
+}
+
+void writeScene(const fs::path& file, const Scene& scene) {
+  if (file.extension() != ".toml")
+    throw InvalidInput(
+        fmt::format("{}: has the extension \"{}\": a scene's must be .toml", file.string(), file.extension().string()));
+  requireWritable(file);
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  writeWhole(file, sceneText(scene, folder));
+}
+
+}  // namespace sunfleck

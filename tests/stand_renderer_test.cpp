@@ -1,0 +1,303 @@
+// Check frames of stands: several kinds of trees and lights, perspective, culling, levels of detail, tiles, layers.
+#include "render/gl/stand_renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "plants/random_leaves.hpp"
+#include "render/gl/stand_picture.hpp"
+#include "sky/sky_models.hpp"
+
+namespace {
+
+using namespace sunfleck;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+// A radiance is a handful of float operations away from its closed form; llvmpipe's exponentials add up to 2e-6.
+constexpr float kShading = 4e-6f;
+
+// A scene of two kinds of crowns, with their products.
+struct Woods {
+  Scene scene;
+  StandGeometry geometry{{.light_resolution = 64, .sample_resolution = 64, .cells = 8}};
+
+  explicit Woods(std::size_t trees = 5) {
+    const auto kind = [](std::uint64_t seed, int leaves) {
+      TreeKind of;
+      RandomCrown crown;
+      crown.leaves = leaves;
+      crown.leaf_side = 0.15f;
+      of.mesh = std::make_shared<TreeMesh>(randomCrown(crown, seed));
+      return of;
+    };
+    scene.kinds = {kind(1, 800), kind(2, 300)};
+    scene.kinds[1].leaf = {LeafOptics{0.1f, 0.1f}, LeafOptics{0.4f, 0.3f}, LeafOptics{0.2f, 0.1f}};
+    scene.stand.trees.clear();
+    for (std::size_t i = 0; i < trees; ++i)
+      scene.stand.trees.push_back({.position = {3.2f * static_cast<float>(i % 3), 3.4f * static_cast<float>(i / 3), 0.f},
+                                   .kind = static_cast<std::uint32_t>(i % 2)});
+    scene.ground_albedo = glm::vec3(0.2f, 0.15f, 0.1f);
+    scene.suns = {{.zenith = 0.5f, .azimuth = 0.3f}, {.zenith = 0.9f, .azimuth = 3.f, .irradiance = {0.2f, 0.3f, 0.4f}}};
+    scene.sky.kind = SceneSky::Kind::uniform;
+    scene.sky.irradiance = glm::dvec3(0.1, 0.2, 0.3);
+  }
+  gl::DrawnStand stand() {
+    geometry.update(scene);
+    return gl::drawnStand(scene, geometry);
+  }
+  Camera camera(int size = 96) const {
+    Camera from = kOverview;
+    from.elevation = 0.6f;
+    from.width = from.height = size;
+    return showingAll(scene, from);
+  }
+};
+
+Camera inPerspective(Camera camera) {
+  camera.field_of_view = 0.8f;
+  return camera;
+}
+
+// Draws with a context of its own, which must have had nothing to say.
+class Drawing {
+ public:
+  explicit Drawing(const gl::DrawnStand& stand) { renderer.update(stand); }
+  ~Drawing() {
+    EXPECT_NO_THROW(context.requireNoError("drawing"));
+    EXPECT_EQ(context.messages(), 0u);
+  }
+  Image picture(const Camera& camera, const gl::PictureEffort& effort = {}) {
+    return gl::standPicture(context, renderer, camera, effort);
+  }
+  gl::Context context;
+  gl::StandRenderer renderer{context};
+};
+
+const std::vector<gl::Layer> kAll(gl::kLayersBesideTotal.begin(), gl::kLayersBesideTotal.end());
+
+std::size_t channel(const Image& image, const std::string& name) {
+  const auto found = std::ranges::find(image.channels, name);
+  EXPECT_NE(found, image.channels.end()) << name;
+  return static_cast<std::size_t>(found - image.channels.begin());
+}
+float value(const Image& image, int x, int y, const std::string& name) {
+  return image.values[image.at(x, y, channel(image, name))];
+}
+
+// (R24) Check that the parts of the light add up to the picture, for every model, with two suns, a sky and two kinds of
+// trees, whose ids all appear; the sum of four parts is off by their roundings.
+TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
+  Woods woods;
+  Drawing drawing(woods.stand());
+  for (const Model model : kModels) {
+    const Image image = drawing.picture(woods.camera(), {.model = model, .samples = 2, .layers = kAll});
+    std::set<float> trees, kinds;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        trees.insert(value(image, x, y, "id.tree"));
+        kinds.insert(value(image, x, y, "id.kind"));
+        for (const std::string band : {"R", "G", "B"}) {
+          float sum = 0.f;
+          for (const std::string part : {"direct.", "single.", "multiple.", "sky."}) sum += value(image, x, y, part + band);
+          ASSERT_NEAR(value(image, x, y, band), sum, 1e-6f);
+        }
+      }
+    EXPECT_EQ(trees.size(), 6u);  // five trees and none
+    EXPECT_EQ(kinds, (std::set<float>{-1.f, 0.f, 1.f}));
+  }
+}
+
+// (R24) Check what a pixel tells of itself against the mesh: its line of sight meets the triangle's plane at the depth
+// told, within the triangle, whose normal is the one told; in parallel and in perspective.
+TEST(R24_StandRenderer, KnowsWhereEachPixelLies) {
+  Woods woods;
+  Drawing drawing(woods.stand());
+  for (const Camera& camera : {woods.camera(48), inPerspective(woods.camera(48))}) {
+    const Image image = drawing.picture(camera, {.samples = 1, .layers = {gl::Layer::geometry, gl::Layer::ids}});
+    int leaves = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const float tree = value(image, x, y, "id.tree");
+        if (tree < 0.f) continue;
+        ++leaves;
+        const Placement& placement = woods.scene.stand.trees[static_cast<std::size_t>(tree)];
+        const TreeMesh& mesh = *woods.scene.kindOf(placement).mesh;
+        const auto number = static_cast<std::size_t>(value(image, x, y, "id.triangle"));
+        EXPECT_EQ(value(image, x, y, "id.leaf"), static_cast<float>(mesh.leaf_of_triangle[number]));
+        const glm::uvec3 t = mesh.leaf_triangles[number];
+        const glm::vec3 a = mesh.vertices[t.x] + placement.position, b = mesh.vertices[t.y] + placement.position,
+                        c = mesh.vertices[t.z] + placement.position;
+        const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
+        const glm::vec3 told(value(image, x, y, "normal.X"), value(image, x, y, "normal.Y"), value(image, x, y, "normal.Z"));
+        EXPECT_NEAR(std::abs(glm::dot(normal, told)), 1.f, 1e-5f);
+        const Sight look = sightThrough(camera, {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
+        EXPECT_LT(glm::dot(told, look.along), 0.f);
+        const float slant = glm::dot(normal, look.along);
+        if (std::abs(slant) < 0.05f) continue;  // its place is not sharp
+        const float away = glm::dot(normal, a - look.from) / slant;
+        // Roundings of some 10 m, by the slant.
+        EXPECT_NEAR(value(image, x, y, "depth.Z"), away * glm::dot(look.along, viewAxes(camera).along), 2e-4f);
+        // Within the triangle, to a 256th of a pixel, in which cards count, and some more in perspective.
+        const glm::vec3 at = look.from + away * look.along;
+        const float pixel = 2.f * camera.half_width / static_cast<float>(camera.width);
+        for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+          const glm::vec3 inward = glm::normalize(glm::cross(normal, to - from));
+          EXPECT_GT(glm::dot(at - from, inward), -0.02f * pixel / std::abs(slant));
+        }
+      }
+    EXPECT_GT(leaves, 100);
+  }
+}
+
+// (R24) Check that trees and clusters beside the view are left out, and that nothing in it changes by that: a part of a
+// picture drawn alone shows the triangles that the whole shows there.
+TEST(R24_StandRenderer, LeavesOutWhatIsNotSeen) {
+  Woods woods;
+  Drawing drawing(woods.stand());
+  for (const Camera& camera : {woods.camera(96), inPerspective(woods.camera(96))}) {
+    gl::FrameTarget whole({96, 96}, true), part({24, 24}, true);
+    gl::View view{.camera = camera};
+    const gl::FrameCost all = drawing.renderer.draw(view, whole);
+    const std::vector<std::uint32_t> ids = whole.readIds();
+    view.low = {40, 32};
+    const gl::FrameCost few = drawing.renderer.draw(view, part);
+    const std::vector<std::uint32_t> of_part = part.readIds();
+    EXPECT_LT(few.triangles, all.triangles / 2);
+    EXPECT_GT(few.triangles, 0u);
+    int differ = 0;
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x)
+        for (std::size_t i = 0; i < 4; ++i)
+          differ += of_part[4 * static_cast<std::size_t>(y * 24 + x) + i] !=
+                    ids[4 * static_cast<std::size_t>((y + 32) * 96 + x + 40) + i];
+    EXPECT_LE(differ, 8);  // two pixels on edges of leaves, where the last bit of a part's coordinates can decide
+  }
+}
+
+// (R25) Check that with fewer and larger leaves the mean radiance and coverage stay within a few parts in a hundred,
+// which is what a random part of some hundred leaves spreads, that the leaves shown are the tree's, and the work is less.
+TEST(R25_StandRenderer, KeepsTheMeanWithFewerLeaves) {
+  Woods woods;
+  Drawing drawing(woods.stand());
+  const auto mean = [](const Image& image, const std::string& name) {
+    double sum = 0.;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) sum += static_cast<double>(value(image, x, y, name));
+    return sum / (image.width * image.height);
+  };
+  woods.scene.ground_albedo = glm::vec3(0.f);
+  drawing.renderer.update(woods.stand());
+  const Camera camera = woods.camera(64);
+  const Image full = drawing.picture(camera, {.samples = 16}), few = drawing.picture(camera, {.samples = 16, .piece_pixels = 4.f});
+  EXPECT_NEAR(mean(few, "A") / mean(full, "A"), 1., 0.06);
+  EXPECT_NEAR(mean(few, "G") / mean(full, "G"), 1., 0.06);
+  gl::FrameTarget target({64, 64});
+  gl::View view{.camera = camera};
+  const std::size_t triangles = drawing.renderer.draw(view, target).triangles;
+  view.piece_pixels = 4.f;
+  EXPECT_LT(drawing.renderer.draw(view, target).triangles, triangles / 2);
+}
+
+// (R24) Check that a picture of several tiles is that of one, but for edges of leaves, where the last bit of a tile's
+// coordinates can decide: at most one pixel in a thousand.
+TEST(R24_StandRenderer, TilesArePartsOfThePicture) {
+  Woods woods(2);
+  woods.scene.sky = {};
+  Drawing drawing(woods.stand());
+  Camera camera = woods.camera(1200);
+  camera.height = 40;
+  const Image tiled = drawing.picture(camera, {.samples = 1});
+  gl::FrameTarget whole({1200, 40});
+  drawing.renderer.draw({.camera = camera}, whole);
+  const std::vector<float> values = whole.read(gl::Layer::total);
+  int differ = 0;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 1200; ++x)
+      differ += std::abs(values[4 * static_cast<std::size_t>((39 - y) * 1200 + x) + 1] - tiled.values[tiled.at(x, y, 1)]) > kShading;
+  EXPECT_LE(differ, 48);
+}
+
+// (R24) Check that pictures are the same bits twice, and after an update with nothing new, which sends no maps, meshes
+// or cells; and that a tree that moves sends its cells and no map.
+TEST(R24_StandRenderer, SendsWhatHasChanged) {
+  Woods woods;
+  Drawing drawing(woods.stand());
+  const Image before = drawing.picture(woods.camera(), {.samples = 2});
+  gl::Sent sent = drawing.renderer.update(woods.stand());
+  EXPECT_EQ(sent.maps + sent.meshes + sent.cells + sent.sky, 0u);
+  EXPECT_EQ(drawing.picture(woods.camera(), {.samples = 2}).values, before.values);
+
+  const Camera camera = woods.camera();
+  woods.scene.stand.trees[4].position.x += 0.7f;
+  sent = drawing.renderer.update(woods.stand());
+  EXPECT_EQ(sent.maps + sent.meshes, 0u);
+  EXPECT_GT(sent.cells, 0u);
+  const Image moved = drawing.picture(camera, {.samples = 2});
+  EXPECT_NE(moved.values, before.values);
+  Drawing anew(woods.stand());
+  EXPECT_EQ(anew.picture(camera, {.samples = 2}).values, moved.values);
+
+  woods.scene.suns[0].azimuth += 0.5f;
+  sent = drawing.renderer.update(woods.stand());
+  EXPECT_EQ(sent.meshes, 0u);
+  EXPECT_GT(sent.maps, 0u);
+}
+
+// (R24) Check what is seen by no light at all, without trees, and of a single pixel: black leaves, the bare sky, ground
+// in full light.
+TEST(R24_StandRenderer, DrawsWhatIsHardlyThere) {
+  Woods woods;
+  woods.scene.sky = {};
+  for (Sun& sun : woods.scene.suns) sun.zenith = 2.f;  // below the horizon
+  Drawing night(woods.stand());
+  const Image dark = night.picture(woods.camera(32));
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) EXPECT_EQ(value(dark, x, y, "G"), 0.f);
+  EXPECT_EQ(value(night.picture(woods.camera(1)), 0, 0, "R"), 0.f);
+
+  gl::DrawnStand bare{.lights = {{.irradiance = {1.f, 0.5f, 0.25f}}},
+                      .ground_albedo = glm::vec3(0.5f),
+                      .sky = std::make_shared<const SkyMap>(uniformSky(glm::dvec3(kPi)))};
+  Drawing empty(bare);
+  const Camera down{.elevation = 0.5f * kPi, .half_width = 0.5f, .width = 2, .height = 2};
+  EXPECT_NEAR(value(empty.picture(down), 0, 0, "G"), 0.5f * 0.5f / kPi, kShading);
+  const Camera up{.elevation = -0.5f * kPi, .half_width = 0.5f, .width = 2, .height = 2};
+  EXPECT_NEAR(value(empty.picture(up), 1, 1, "G"), 1.f, kShading);
+  EXPECT_EQ(value(empty.picture(up), 1, 1, "A"), 0.f);
+}
+
+// (R24) Check what is under the cursor: the tree that was put there, at its place; the ground; nothing.
+TEST(R24_StandRenderer, TellsWhatIsUnderTheCursor) {
+  Woods woods(4);
+  Drawing drawing(woods.stand());
+  Camera camera{.target = woods.scene.stand.trees[3].position, .elevation = 0.5f * kPi, .half_width = 12.f, .width = 65, .height = 65};
+  gl::FrameTarget target({65, 65});
+  const gl::View view{.camera = camera};
+  drawing.renderer.draw(view, target);
+  int hits = 0;
+  for (int x = 28; x < 37; ++x) {
+    const auto pick = drawing.renderer.at({x, 32}, view, target);
+    ASSERT_TRUE(pick);
+    if (!pick->tree) continue;
+    ++hits;
+    EXPECT_EQ(*pick->tree, 3u);
+    EXPECT_TRUE(pick->leaf);
+    EXPECT_LT(glm::distance(glm::vec2(pick->place), glm::vec2(camera.target)), 2.f);
+  }
+  EXPECT_GT(hits, 2);
+  const auto corner = drawing.renderer.at({22, 32}, view, target);
+  ASSERT_TRUE(corner);
+  EXPECT_FALSE(corner->tree);
+  camera.elevation = -0.4f;
+  drawing.renderer.draw({.camera = camera}, target);
+  EXPECT_FALSE(drawing.renderer.at({0, 64}, {.camera = camera}, target));
+}
+
+}  // namespace
