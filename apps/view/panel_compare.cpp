@@ -112,6 +112,8 @@ void Panels::drawProbe(Session&, const FrameReport& report) {
   row("pixel", fmt::format("{}, {}", probe.pixel.x, probe.pixel.y));
   row("seen", probe.what);
   if (probe.tree) row("tree", fmt::format("{}", *probe.tree + 1));
+  if (probe.place)
+    row("place", fmt::format("{:.2f}, {:.2f}, {:.2f} m", probe.place->x, probe.place->y, probe.place->z));
   const auto radiance = [](const glm::vec3& r) { return fmt::format("{:.4f} {:.4f} {:.4f}", r.x, r.y, r.z); };
   row("radiance", radiance(probe.radiance));
   tip("Red, green, blue [1/sr], for sun irradiance 1");

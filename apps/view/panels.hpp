@@ -27,6 +27,7 @@ struct Probe {
   glm::ivec2 pixel{0};
   std::string what = "sky";  // kind and leaf, wood, ground
   std::optional<std::size_t> tree;
+  std::optional<glm::vec3> place;                                              // [m]
   glm::vec3 radiance{0.f}, direct{0.f}, single{0.f}, multiple{0.f}, sky{0.f};  // [1/sr]
   std::optional<float> depth, thickness, compensation;                         // where there is a leaf [1]
 };

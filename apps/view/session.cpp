@@ -71,11 +71,7 @@ void Session::advance() {
     if (working || !*read_) return;
     history_.emplace(std::move(**read_));
     read_.reset();
-    const Camera seen = cameraOf(document().scene);
-    const int width = camera.width, height = camera.height;
-    camera = seen;
-    camera.width = width;
-    camera.height = height;
+    camera = cameraOf(document().scene);
   }
   if (grown_ && !worker_.state().busy && *grown_) {
     const TreeKind kind = std::move(**grown_);
@@ -189,6 +185,23 @@ float Session::groundHeight() const {
   float lowest = scene.stand.trees.empty() ? 0.f : scene.stand.trees.front().position.z;
   for (const Placement& tree : scene.stand.trees) lowest = std::min(lowest, tree.position.z);
   return lowest;
+}
+
+void Session::fit(glm::ivec2 size) {
+  const auto aspect = [](float width, float height) { return width / height; };
+  if (loaded() && !fitted_) {
+    const float wider = aspect(static_cast<float>(size.x), static_cast<float>(size.y)) /
+                        aspect(static_cast<float>(camera.width), static_cast<float>(camera.height));
+    camera.width = size.x;
+    camera.height = size.y;
+    if (!document().scene.camera)
+      camera = showingAll(document().scene, camera);
+    else
+      camera.half_width *= std::max(wider, 1.f);
+    fitted_ = true;
+  }
+  camera.width = size.x;
+  camera.height = size.y;
 }
 
 void Session::showWholeStand() {

@@ -79,6 +79,8 @@ class Session {
 
   Camera camera;  // as looked through now; its size is that of the picture
   Look look;
+  // Gives the camera's picture this size; the first time so that all that the scene's camera shows is in it.
+  void fit(glm::ivec2 size);
   void showWholeStand();
   void goTo(const std::string& saved_camera);
 
@@ -107,6 +109,7 @@ class Session {
   std::uint64_t gesture_ = 0, strokes_ = 0;
   std::vector<ProductCost> last_costs_, recomputed_;
   double last_seconds_ = 0.;
+  bool fitted_ = false;
   std::string message_;
   bool message_is_error_ = false;
   StandWorker worker_;  // last: it ends before what it works on

@@ -27,7 +27,7 @@ std::unique_ptr<Window> windowFor(const ViewerOptions& options) {
 
 std::unique_ptr<gl::Context> contextFor(const ViewerOptions& options) {
   return options.offscreen ? std::make_unique<gl::Context>()
-                           : std::make_unique<gl::Context>(gl::Context::Adopt::current);
+                           : std::make_unique<gl::Context>(gl::Context::Of::the_current);
 }
 
 }  // namespace
@@ -41,7 +41,6 @@ Viewer::Viewer(const ViewerOptions& options)
       renderer_(*context_),
       tracing_(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)) {
   session_.look = options.look;
-  session_.camera.width = session_.camera.height = 1;
   renderer_.timePasses(true);
   report_.renderer = context_->renderer();
 }
@@ -49,6 +48,8 @@ Viewer::Viewer(const ViewerOptions& options)
 void Viewer::run() {
   while (frame()) {
   }
+  if (const std::size_t messages = context_->messages(); messages > 0 && !options_.script.empty())
+    throw std::runtime_error(fmt::format("OpenGL reported {} messages while the script ran", messages));
 }
 
 bool Viewer::still() const {
@@ -63,11 +64,45 @@ bool Viewer::settled() const {
   return still() && still_frames_ >= kTold;
 }
 
+// All that is drawn stays as it is until something happens, but for what the background tells of itself.
+bool Viewer::needsDrawing() const {
+  constexpr double kLookAgain = 0.4, kProgress = 0.1;  // [s]
+  const bool same_input = input_.size == before_.size && input_.mouse == before_.mouse && input_.wheel == 0.f &&
+                          std::equal(std::begin(input_.buttons), std::end(input_.buttons), before_.buttons) &&
+                          input_.held == before_.held && input_.typed.empty() && input_.pressed.empty();
+  if (!same_input || !synthetic_.empty() || frames_left_ > 0 || options_.frames) return true;
+  const double seconds = clock_.seconds() - drawn_seconds_;
+  if (settled()) return seconds > kLookAgain;
+  return !waitsForWork() || seconds > kProgress;
+}
+
+bool Viewer::waitsForWork() const {
+  if (!session_.loaded()) return true;
+  return !session_.upToDate() && session_.work().busy &&
+         (stand_ == 0 || (a_.done(session_.look.samples) && a_.key() == keyOf(session_.document().model)));
+}
+
+void Viewer::takeResult() {
+  session_.advance();
+  const auto result = session_.take();
+  if (!result) return;
+  const Elapsed sending;
+  const gl::Sent sent = renderer_.update(gl::drawnStand(result->made.scene, *result->geometry));
+  report_.sent_ms = 1e3 * sending.seconds();
+  report_.sent_bytes = sent.meshes + sent.maps + sent.trees + sent.cells + sent.sky;
+  stand_ = result->made.revision;
+  drawn_trees_ = result->made.scene.stand.trees.size();
+  session_.release(*result);
+}
+
 bool Viewer::frame() {
   advanceScript();
   before_ = input_;
   input_ = nextInput();
   if (input_.close || (options_.interrupted && options_.interrupted())) return false;
+  takeResult();
+  if (!needsDrawing()) return true;
+  drawn_seconds_ = clock_.seconds();
   const Elapsed frame_time;
   if (input_.size != glm::ivec2(0)) {
     canvas_.resize(input_.size);
@@ -77,20 +112,9 @@ bool Viewer::frame() {
     if (session_.loaded()) act(input_);
     const auto [corner, size] = panels_.draw(input_.size, session_, report_, requests_);
     corner_ = corner;
-    session_.camera.width = size.x;
-    session_.camera.height = size.y;
+    session_.fit(size);
     picture_.resize(size);
     overlay();
-  }
-  session_.advance();
-  if (const auto result = session_.take()) {
-    const Elapsed sending;
-    const gl::Sent sent = renderer_.update(gl::drawnStand(result->made.scene, *result->geometry));
-    report_.sent_ms = 1e3 * sending.seconds();
-    report_.sent_bytes = sent.meshes + sent.maps + sent.trees + sent.cells + sent.sky;
-    stand_ = result->made.revision;
-    drawn_trees_ = result->made.scene.stand.trees.size();
-    session_.release(*result);
   }
   if (input_.size != glm::ivec2(0)) {
     const bool drew = drawPictures();
@@ -117,7 +141,7 @@ bool Viewer::frame() {
 Input Viewer::nextInput() {
   const bool scripted = next_step_ < options_.script.size() || options_.ends || options_.frames.has_value();
   double wait = 0.;
-  if (!session_.loaded() || (session_.work().busy && a_.done(session_.look.samples)))
+  if (waitsForWork())
     wait = kBusyWait;
   else if (settled() && drag_ == Drag::none)
     wait = scripted ? kBusyWait : kIdleWait;

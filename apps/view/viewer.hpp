@@ -69,7 +69,10 @@ class Viewer {
   void serve(Requests& requests);
   PictureKey keyOf(Model model) const;
   Probe probeAt(glm::vec2 place);
-  bool still() const;    // what is drawn is up to date and smooth
+  bool still() const;  // what is drawn is up to date and smooth
+  bool needsDrawing() const;
+  bool waitsForWork() const;  // in the background, with nothing to draw until then
+  void takeResult();
   bool settled() const;  // and the panels tell of it
   void saveScreenshot(const std::filesystem::path& file) const;
   void saveWindow(const std::filesystem::path& file) const;
@@ -126,7 +129,7 @@ class Viewer {
   bool scripted_mouse_ = false;
   int frame_count_ = 0;
   Elapsed clock_;
-  double last_seconds_ = 0.;
+  double last_seconds_ = 0., drawn_seconds_ = -1.;
 };
 
 }  // namespace sunfleck::view

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "apps/view/viewer.hpp"
-#include "render/gl/detail/frame_data.hpp"
 
 namespace sunfleck::view {
 namespace {
@@ -98,9 +97,9 @@ Probe Viewer::probeAt(glm::vec2 place) {
   }
   // The middle of this pixel alone, as no other sample blurs it.
   if (!probe_target_) probe_target_.emplace(glm::ivec2(1), true);
-  renderer_.draw(
-      {.camera = camera, .model = session_.document().model, .low = {probe.pixel.x, camera.height - 1 - probe.pixel.y}},
-      *probe_target_);
+  const gl::View view{
+      .camera = camera, .model = session_.document().model, .low = {probe.pixel.x, camera.height - 1 - probe.pixel.y}};
+  renderer_.draw(view, *probe_target_);
   const auto read = [&](gl::Layer layer) {
     const std::vector<float> v = probe_target_->read(layer);
     return glm::vec4(v[0], v[1], v[2], v[3]);
@@ -110,15 +109,16 @@ Probe Viewer::probeAt(glm::vec2 place) {
   probe.single = read(gl::Layer::single);
   probe.multiple = read(gl::Layer::multiple);
   probe.sky = read(gl::Layer::sky);
-  const std::vector<std::uint32_t> ids = probe_target_->readIds();
+  const std::optional<gl::Pick> seen = renderer_.at({0, 0}, view, *probe_target_);
+  if (!seen) return probe;
   const Scene& scene = session_.document().scene;
-  if (ids[0] == gl::detail::kGround) probe.what = "ground";
-  if (ids[0] >= gl::detail::kGround || scene.stand.trees.size() != drawn_trees_) return probe;
-  probe.tree = ids[0] % drawn_trees_;  // copies of a periodic stand follow one another
-  const std::string& kind = scene.kindOf(scene.stand.trees[*probe.tree]).name;
-  const bool is_leaf = ids[3] != ~0u;
-  probe.what = is_leaf ? fmt::format("{}, leaf {}", kind, ids[3] + 1) : kind + ", wood";
-  if (!is_leaf) return probe;
+  probe.place = seen->place;
+  if (!seen->tree) probe.what = "ground";
+  if (!seen->tree || scene.stand.trees.size() != drawn_trees_) return probe;
+  probe.tree = *seen->tree;
+  const std::string& kind = scene.kindOf(scene.stand.trees[*seen->tree]).name;
+  probe.what = seen->leaf ? fmt::format("{}, leaf {}", kind, *seen->leaf + 1) : kind + ", wood";
+  if (!seen->leaf) return probe;
   const glm::vec4 foliage = read(gl::Layer::foliage);
   probe.depth = foliage.x;
   probe.thickness = foliage.x + foliage.y + 1.f;
