@@ -16,6 +16,7 @@ void addTrace(CLI::App& app, RunOptions& options, int& status);
 void addSweep(CLI::App& app, RunOptions& options, int& status);
 void addMerge(CLI::App& app, RunOptions& options, int& status);
 void addRender(CLI::App& app, RunOptions& options, int& status);
+void addView(CLI::App& app, RunOptions& options, int& status);
 void addBench(CLI::App& app, RunOptions& options, int& status);
 
 }  // namespace sunfleck::apps

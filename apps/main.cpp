@@ -99,6 +99,7 @@ int run(int count, char** arguments, apps::Team* team) {
   apps::addSweep(app, options, status);
   apps::addMerge(app, options, status);
   apps::addRender(app, options, status);
+  apps::addView(app, options, status);
   apps::addBench(app, options, status);
   try {
     app.parse(withCommand(app, count, arguments));

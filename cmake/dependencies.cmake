@@ -15,6 +15,8 @@ find_package(ZLIB REQUIRED)
 find_path(Random123_INCLUDE_DIR Random123/philox.h REQUIRED)  # headers alone
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
+find_package(glfw3 REQUIRED)
+pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 

@@ -84,6 +84,13 @@ void writeImage(const fs::path& file, const Image& image, const Display& display
     });
 }
 
+void writePng(const fs::path& file, int width, int height, std::span<const std::uint8_t> colours) {
+  if (lowered(file.extension().string()) != ".png")
+    throw InvalidInput(file.string() + ": has the extension \"" + file.extension().string() + "\": must be .png");
+  requireWritable(file);
+  writeWhole(file, detail::imageCodec().png(width, height, 3, colours));
+}
+
 Image readImage(const fs::path& file, ImageValues values) {
   const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": cannot be read: " + why); };
   std::error_code failure;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "core/image.hpp"
@@ -12,6 +14,10 @@ namespace sunfleck {
 // shows them as the display says, 8 bits: channels R, G and B, or else the first channel as grey. Throws InvalidInput
 // on another extension or a place that cannot be written.
 void writeImage(const std::filesystem::path& file, const Image& image, const Display& display);
+
+// Writes a .png of 8-bit colours as they stand, red, green and blue, rows from the top; whole or not at all. Throws
+// InvalidInput on another extension or a place that cannot be written.
+void writePng(const std::filesystem::path& file, int width, int height, std::span<const std::uint8_t> colours);
 
 // Throws InvalidInput unless a picture could be written at `file`: to be asked before long work.
 void requirePictureName(const std::filesystem::path& file);

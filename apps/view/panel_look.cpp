@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "apps/view/detail/widgets.hpp"
+#include "apps/view/panels.hpp"
+
+namespace sunfleck::view {
+namespace {
+
+const char* aboutOf(Model model) {
+  switch (model) {
+    case Model::ss:
+      return "Light scattered once: fast and too dark";
+    case Model::spp:
+      return "Simplified plane-parallel slab: all orders, but as if the crown had no edge";
+    case Model::sppg:
+      return "The slab compensated for the crown's edge by G";
+    default:
+      return "A model of the slab, compensated by G";
+  }
+}
+
+}  // namespace
+
+void Panels::drawLeaf(Session& session) {
+  const Scene& scene = session.document().scene;
+  kind = std::min(kind, static_cast<std::uint32_t>(scene.kinds.size() - 1));
+  if (scene.kinds.size() > 1 && ImGui::BeginCombo("kind", scene.kinds[kind].name.c_str())) {
+    for (std::uint32_t i = 0; i < scene.kinds.size(); ++i)
+      if (ImGui::Selectable(scene.kinds[i].name.c_str(), i == kind)) kind = i;
+    ImGui::EndCombo();
+  }
+  BandOptics leaf = scene.kinds[kind].leaf;
+  glm::vec3 wood = scene.kinds[kind].wood_reflectance;
+  bool edited = false;
+  heading("Leaves");
+  float albedo = 0.f;
+  for (const LeafOptics& band : leaf) albedo += band.albedo() / static_cast<float>(kBands);
+  if (changed(ImGui::SliderFloat("albedo", &albedo, 0.f, 1.f, "%.3f"), session)) {
+    for (LeafOptics& band : leaf) band.reflectance = band.transmittance = 0.5f * albedo;
+    edited = true;
+  }
+  tip("Share of light that leaves scatter, half of it reflected, in all bands; 0.95 in the paper's experiment");
+  glm::vec3 reflectance, transmittance;
+  for (int band = 0; band < kBands; ++band) {
+    reflectance[band] = leaf[static_cast<std::size_t>(band)].reflectance;
+    transmittance[band] = leaf[static_cast<std::size_t>(band)].transmittance;
+  }
+  const bool by_reflectance =
+      changed(ImGui::DragFloat3("reflectance", &reflectance.x, 0.002f, 0.f, 1.f, "%.3f"), session);
+  tip("Share sent back on the side it came from: red, green, blue");
+  const bool by_transmittance =
+      changed(ImGui::DragFloat3("transmittance", &transmittance.x, 0.002f, 0.f, 1.f, "%.3f"), session);
+  tip("Share sent on through the leaf: red, green, blue. With the reflectance at most 1");
+  for (int band = 0; band < kBands && (by_reflectance || by_transmittance); ++band) {
+    LeafOptics& of = leaf[static_cast<std::size_t>(band)];
+    of.reflectance = by_reflectance ? std::min(reflectance[band], 1.f - of.transmittance) : of.reflectance;
+    of.transmittance = by_transmittance ? std::min(transmittance[band], 1.f - of.reflectance) : of.transmittance;
+    edited = true;
+  }
+  float gloss = leaf[0].gloss, roughness = leaf[0].gloss_roughness;
+  if (changed(ImGui::SliderFloat("gloss", &gloss, 0.f, 1.f, "%.2f"), session)) edited = true;
+  tip("Intensity of a glossy reflection on both sides; the shares above are then of the light it lets in");
+  if (changed(ImGui::SliderFloat("roughness", &roughness, kLeastGlossRoughness, 1.f, "%.2f"), session)) edited = true;
+  tip("Of the gloss: root mean square slope of its facets");
+  for (LeafOptics& band : leaf) {
+    band.gloss = gloss;
+    band.gloss_roughness = roughness;
+  }
+  heading("Wood");
+  edited |= changed(ImGui::ColorEdit3("reflectance##wood", &wood.x, ImGuiColorEditFlags_Float), session);
+  tip("Lambertian, per band, 0 to 1");
+  if (edited) session.attempt([&] { session.edit(SetOptics{kind, leaf, wood}, gesture); });
+}
+
+void Panels::drawModel(Session& session) {
+  const Document& document = session.document();
+  Look& look = session.look;
+  heading("Scattering model");
+  for (const Model model : kModels) {
+    if (ImGui::RadioButton(nameOf(model).c_str(), document.model == model))
+      session.attempt([&] { session.edit(SetModel{model}); });
+    tip(aboutOf(model));
+  }
+  heading("Picture");
+  if (ImGui::BeginCombo("shows", nameOf(look.layer).c_str())) {
+    for (const Layer layer : kLayers)
+      if (ImGui::Selectable(nameOf(layer).c_str(), look.layer == layer)) look.layer = layer;
+    ImGui::EndCombo();
+  }
+  tip("All light, or that of one scattering, or depth, thickness and G of what is seen");
+  ImGui::SliderFloat("exposure", &look.display.exposure, 0.05f, 100.f, "%.2f", ImGuiSliderFlags_Logarithmic);
+  tip("Factor from radiance to brightness");
+  if (ImGui::BeginCombo("tone", nameOf(look.display.curve).c_str())) {
+    for (const ToneCurve tone : kTones)
+      if (ImGui::Selectable(nameOf(tone).c_str(), tone == look.display.curve)) look.display.curve = tone;
+    ImGui::EndCombo();
+  }
+  tip("clamp: light as it is; filmic: shadows a little deeper, highlights that fade");
+  ImGui::SliderInt("samples", &look.samples, 1, 64);
+  tip("Per pixel, drawn one after the other while nothing moves");
+  ImGui::Checkbox("fewer leaves far away", &look.fewer_leaves);
+  tip("Leaves much smaller than a pixel are drawn fewer and larger; their light is that of the full tree");
+  bool perspective = session.camera.perspective();
+  if (ImGui::Checkbox("perspective", &perspective))
+    session.camera = perspective ? inPerspective(session.camera, kWideView) : orthographic(session.camera);
+  if (perspective) {
+    float degrees = session.camera.field_of_view * 57.29578f;
+    if (ImGui::SliderFloat("field of view", &degrees, 5.f, 120.f, "%.0f\u00b0"))
+      session.camera = inPerspective(session.camera, degrees / 57.29578f);
+    tip("Of the picture's width [degrees]");
+  }
+  int navigation = static_cast<int>(look.navigation);
+  if (ImGui::Combo("mouse", &navigation, "orbit\0fly\0walk\0")) look.navigation = static_cast<Navigation>(navigation);
+  tip("Orbit: drag turns about the target. Fly, walk: drag looks around; W A S D (Q E) move");
+
+  heading("Quality of the light");
+  GeometryEffort effort = document.effort;
+  const auto choice = [&](const char* name, int& value, std::initializer_list<int> values, const char* about) {
+    if (ImGui::BeginCombo(name, fmt::format("{}", value).c_str())) {
+      for (const int of : values)
+        if (ImGui::Selectable(fmt::format("{}", of).c_str(), of == value) && of != value) {
+          value = of;
+          session.attempt([&] { session.edit(SetEffort{effort}); });
+        }
+      ImGui::EndCombo();
+    }
+    tip(about);
+  };
+  choice("directions", effort.sample_directions, {6, 14, 22, 48, 96}, "Sample directions of G and of the sky's light");
+  choice("light map", effort.light_resolution, {128, 256, 512, 1024, 2048, 4096},
+         "Pixels along the light's opacity map of each kind");
+  choice("sample maps", effort.sample_resolution, {128, 256, 512}, "Pixels along the maps in the sample directions");
+  choice("cells", effort.cells, {8, 16, 24, 32}, "Along the longest side of a tree");
+}
+
+}  // namespace sunfleck::view

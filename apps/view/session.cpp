@@ -1,0 +1,253 @@
+#include "apps/view/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "core/random.hpp"
+#include "core/require.hpp"
+#include "plants/species.hpp"
+#include "plants/weber_penn.hpp"
+#include "render/scene_file.hpp"
+#include "sky/solar_position.hpp"
+
+namespace sunfleck::view {
+
+namespace {
+
+TreeKind readKind(const std::string& species_or_file, std::uint64_t seed) {
+  if (std::filesystem::path(species_or_file).has_extension()) return readScene(species_or_file).kinds.front();
+  TreeKind kind;
+  kind.name = species_or_file;
+  kind.source = fmt::format("species {}, seed {}", species_or_file, seed);
+  kind.recipe = {.species = species_or_file, .seed = seed, .file = {}, .rules = {}};
+  kind.mesh = std::make_shared<const TreeMesh>(grow(species(species_or_file), seed));
+  return kind;
+}
+
+}  // namespace
+
+std::string nameOf(Layer layer) {
+  switch (layer) {
+    case Layer::total:
+      return "total";
+    case Layer::direct:
+      return "direct";
+    case Layer::single:
+      return "single";
+    case Layer::multiple:
+      return "multiple";
+    case Layer::sky:
+      return "sky";
+    case Layer::depth:
+      return "depth";
+    case Layer::thickness:
+      return "thickness";
+    case Layer::compensation:
+      return "g";
+  }
+  return {};
+}
+
+std::string nameOf(ToneCurve tone) {
+  return tone == ToneCurve::filmic ? "filmic" : "clamp";
+}
+
+Session::Session(std::string name, std::function<Document()> read)
+    : read_(std::make_shared<std::optional<Document>>()) {
+  worker_.run("reading " + name, [read = std::move(read), into = read_] { *into = read(); });
+}
+
+void Session::advance() {
+  if (const std::exception_ptr failure = worker_.failure()) {
+    if (!loaded()) std::rethrow_exception(failure);
+    attempt([&] { std::rethrow_exception(failure); });
+  }
+  const bool working = worker_.state().busy;
+  if (!loaded()) {
+    if (working || !*read_) return;
+    history_.emplace(std::move(**read_));
+    read_.reset();
+    camera = cameraOf(document().scene);
+  }
+  if (grown_ && !worker_.state().busy && *grown_) {
+    const TreeKind kind = std::move(**grown_);
+    grown_.reset();
+    attempt([&] { edit(AddKind{kind, {glm::vec2(camera.target), groundHeight()}}); });
+  }
+  if (wished_ != history_->revision() + 1) {
+    wished_ = history_->revision() + 1;
+    worker_.wish({.scene = document().scene, .needs = {}, .effort = document().effort, .revision = wished_});
+  }
+}
+
+void Session::edit(const SceneEdit& edit, std::uint64_t gesture) {
+  history_->apply(edit, gesture);
+  say("changed: " + nameOf(edit));
+}
+
+void Session::undo() {
+  const auto what = history_->undoes();
+  say(history_->undo() ? "undone: " + *what : "there is nothing to undo");
+}
+
+void Session::redo() {
+  const auto what = history_->redoes();
+  say(history_->redo() ? "done again: " + *what : "there is nothing to do again");
+}
+
+void Session::select(std::optional<std::size_t> tree) {
+  history_->select(tree);
+  if (!tree) return;
+  const Scene& scene = document().scene;
+  const Placement& placement = scene.stand.trees[*tree];
+  say(fmt::format("tree {} ({}) at {:.2f}, {:.2f} m", *tree + 1, scene.kindOf(placement).name, placement.position.x,
+                  placement.position.y));
+}
+
+void Session::attempt(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& e) {
+    say(e.what(), true);
+  }
+}
+
+namespace {
+
+std::size_t selectedTree(const Document& document) {
+  if (!document.selected) throw InvalidInput("no tree is selected");
+  return *document.selected;
+}
+
+}  // namespace
+
+void Session::moveSelected(glm::vec2 by, std::uint64_t gesture) {
+  const std::size_t tree = selectedTree(document());
+  edit(MoveTree{tree, document().scene.stand.trees[tree].position + glm::vec3(by, 0.f)}, gesture);
+}
+
+void Session::addTree(glm::vec2 place, std::uint32_t kind) {
+  edit(AddTrees{{Placement{.position = {place, groundHeight()}, .kind = kind}}});
+}
+
+void Session::copySelected(glm::vec2 by) {
+  Placement copy = document().scene.stand.trees[selectedTree(document())];
+  copy.position += glm::vec3(by, 0.f);
+  edit(AddTrees{{copy}});
+}
+
+void Session::removeSelected() {
+  edit(RemoveTrees{{selectedTree(document())}});
+}
+
+void Session::paint(glm::vec2 place, float radius, float spacing, std::uint32_t kind, std::uint64_t gesture) {
+  constexpr int kTrials = 60;
+  Random random(++strokes_, 0);  // the same strokes paint the same trees
+  std::vector<Placement> painted;
+  const auto isFree = [&](const glm::vec2& at) {
+    const auto far = [&](const Placement& tree) { return glm::distance(glm::vec2(tree.position), at) >= spacing; };
+    return std::ranges::all_of(document().scene.stand.trees, far) && std::ranges::all_of(painted, far);
+  };
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const float angle = 6.2831853f * random.uniform(), away = radius * std::sqrt(random.uniform());
+    const glm::vec2 at = place + away * glm::vec2(std::cos(angle), std::sin(angle));
+    if (isFree(at)) painted.push_back({.position = {at, groundHeight()}, .kind = kind});
+  }
+  if (!painted.empty()) edit(AddTrees{painted}, gesture);
+}
+
+void Session::turnSunByDate(std::size_t sun, const std::string& date, const std::string& time, double latitude,
+                            double longitude) {
+  const SolarPosition at = solarPosition(utcMoment(date, time), glm::radians(latitude), glm::radians(longitude));
+  std::vector<Sun> suns = document().scene.suns;
+  require(sun < suns.size(), "sun", sun + 1, "one of the scene's suns");
+  suns[sun].zenith = static_cast<float>(at.zenith);
+  suns[sun].azimuth = static_cast<float>(at.azimuth);
+  edit(SetSuns{suns});
+}
+
+void Session::addKind(const std::string& species_or_file, std::uint64_t seed) {
+  grown_ = std::make_shared<std::optional<TreeKind>>();
+  worker_.run("growing " + species_or_file,
+              [species_or_file, seed, into = grown_] { *into = readKind(species_or_file, seed); });
+}
+
+std::uint32_t Session::selectedKind() const {
+  return document().selected ? document().scene.stand.trees[*document().selected].kind : 0;
+}
+
+float Session::groundHeight() const {
+  const Scene& scene = document().scene;
+  float lowest = scene.stand.trees.empty() ? 0.f : scene.stand.trees.front().position.z;
+  for (const Placement& tree : scene.stand.trees) lowest = std::min(lowest, tree.position.z);
+  return lowest;
+}
+
+void Session::fit(glm::ivec2 size) {
+  const auto aspect = [](float width, float height) { return width / height; };
+  if (loaded() && !fitted_) {
+    const float wider = aspect(static_cast<float>(size.x), static_cast<float>(size.y)) /
+                        aspect(static_cast<float>(camera.width), static_cast<float>(camera.height));
+    camera.width = size.x;
+    camera.height = size.y;
+    if (!document().scene.camera)
+      camera = showingAll(document().scene, camera);
+    else
+      camera.half_width *= std::max(wider, 1.f);
+    fitted_ = true;
+  }
+  camera.width = size.x;
+  camera.height = size.y;
+}
+
+void Session::showWholeStand() {
+  camera = showingAll(document().scene, camera);
+}
+
+void Session::goTo(const std::string& saved_camera) {
+  const auto found = std::ranges::find(document().cameras, saved_camera, &SavedCamera::name);
+  if (found == document().cameras.end()) throw InvalidInput("camera \"" + saved_camera + "\": must be a saved one");
+  const int width = camera.width, height = camera.height;
+  camera = found->camera;
+  camera.width = width;
+  camera.height = height;
+}
+
+void Session::release(const StandWorker::Result& shown) {
+  shown_ = shown.made.revision;
+  last_costs_ = shown.costs;
+  last_seconds_ = shown.seconds;
+  if (recomputed_.size() != last_costs_.size()) {
+    recomputed_ = last_costs_;
+  } else {
+    for (std::size_t i = 0; i < recomputed_.size(); ++i) {
+      recomputed_[i].made += last_costs_[i].made;
+      recomputed_[i].adjusted += last_costs_[i].adjusted;
+      recomputed_[i].reused += last_costs_[i].reused;
+      recomputed_[i].seconds += last_costs_[i].seconds;
+    }
+  }
+  worker_.release();
+}
+
+bool Session::upToDate() const {
+  return loaded() && !grown_ && shown_ == history_->revision() + 1;
+}
+
+void Session::cancel() {
+  worker_.cancel();
+  grown_.reset();
+  if (loaded()) shown_ = wished_;  // what is drawn stays until the next change
+  say("cancelled");
+}
+
+void Session::say(std::string message, bool error) {
+  message_ = std::move(message);
+  message_is_error_ = error;
+}
+
+}  // namespace sunfleck::view
