@@ -23,8 +23,8 @@ inline std::uint32_t owenScrambled(std::uint32_t x, std::uint32_t seed) {
   return x ^ x * 0x53a22864u;
 }
 
-// Second dimension of the Sobol' sequence, as a binary fraction, from the first, which is the reversed index: digit i is
-// the sum of the digits j whose binomial coefficient over i is odd, those with all of the bits of i (Lucas 1878).
+// Second dimension of the Sobol' sequence, as a binary fraction, from the first, which is the reversed index: digit i
+// is the sum of the digits j whose binomial coefficient over i is odd, those with all of the bits of i (Lucas 1878).
 inline std::uint32_t secondSobol(std::uint32_t first) {
   first ^= first << 1 & 0xaaaaaaaau;
   first ^= first << 2 & 0xccccccccu;
