@@ -16,6 +16,7 @@
 #include "apps/visible_by_rays.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/opacity_map_store.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
@@ -47,7 +48,7 @@ bool mapsByCard(const RenderOptions& options, const gl::Context& context) {
 // triangles than it draws in that time.
 bool visibleByRays(const RenderOptions& options, const gl::Context& context, const Scene& scene) {
   if (options.visibility != "auto") return options.visibility == "rays";
-  if (!context.drawsInSoftware()) return false;
+  if (!context.drawsInSoftware() || options.detail > 0.f) return false;
   std::size_t triangles = 0;
   for (const Placement& tree : scene.stand.trees) {
     const TreeMesh& mesh = *scene.kindOf(tree).mesh;
@@ -92,7 +93,7 @@ Drawn drawn(const Scene& scene, gl::PictureEffort picture, const RenderOptions& 
   drawn.prepare_seconds = seconds();
   drawn.costs = stand.costs();
 
-  gl::StandRenderer renderer(context);
+  gl::StandRenderer renderer(context, exactPowerTable);
   const gl::DrawnStand to_draw = gl::drawnStand(scene, stand, maps ? &*maps : nullptr);
   renderer.update(to_draw);
   std::optional<VisibleByRays> rays;
@@ -125,7 +126,7 @@ std::vector<std::string> layerNames() {
 
 int runRender(const RenderOptions& options, const RunOptions& run) {
   requirePictureName(options.output);
-  const gl::PictureEffort effort{.model = *std::ranges::find(kModels, options.model, nameOf),
+  const gl::PictureEffort effort{.model = *modelNamed(options.model),
                                  .samples = options.samples,
                                  .piece_pixels = options.detail,
                                  .layers = layersOf(options)};
@@ -178,11 +179,12 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
   addCameraOptions(*command, render->camera);
   command->add_option("-o,--output", render->output, "Picture to write: .exr (radiances) or .png")->required();
   command
-      ->add_option(
-          "--model", render->model,
-          "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); nstreamg: a better "
-          "slab with G-factor")
-      ->check(CLI::IsMember({"ss", "spp", "sppg", "nstreamg"}));
+      ->add_option("--model", render->model,
+                   "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); sppr, nstreamg, "
+                   "pp: better slabs with G-factor, refined, by two streams, exact by a table")
+      ->check([](const std::string& name) {
+        return modelNamed(name) ? std::string() : "model \"" + name + "\": must be one of " + modelNames();
+      });
   addDisplayOptions(*command, render->display);
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
       ->transform(wholeNumberIn(1., 4096., "a whole number, 1 to 4096"));
@@ -195,7 +197,8 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
       ->add_option(
           "--visibility", render->visibility,
           "What finds which leaf each pixel shows: raster, OpenGL; rays, which draw thousands of trees without a "
-          "graphics card; or auto (default): rays where there is none and the trees are many")
+          "graphics card, all of their leaves; or auto (default): rays where there is none and the trees are many, "
+          "unless --detail asks for fewer leaves")
       ->check(CLI::IsMember({"raster", "rays", "auto"}));
   command
       ->add_option("--samples", render->samples, "Frames averaged, each through other places of the pixels (default 4)")

@@ -45,8 +45,7 @@ std::size_t CellAtlas::update(const DrawnStand& stand) {
     if (!told(drawn)) continue;
     now[tree].block = count++;
     for (std::size_t light = 0; light < kMostLights; ++light)
-      now[tree].compensation[light] =
-          drawn.compensation[light].values.empty() ? 0 : drawn.compensation[light].revision;
+      now[tree].compensation[light] = drawn.compensation[light].values.empty() ? 0 : drawn.compensation[light].revision;
     now[tree].sky_light = drawn.sky_light.values.empty() ? 0 : drawn.sky_light.revision;
     now[tree].source = drawn.compensation[0].values.data();
   }
@@ -55,7 +54,8 @@ std::size_t CellAtlas::update(const DrawnStand& stand) {
   const bool with_sky = skyTold(stand);
   const int channels = stand.lights.size() > 1 ? 4 : 1;  // fewer are read faster
   const auto room = static_cast<std::uint32_t>(blocks_.x * blocks_.y * blocks_.z);
-  if (!compensation_ || channels != compensation_->channels() || block_size != block_size_ || count > room || (with_sky && sky_->size() == glm::ivec3(1))) {
+  if (!compensation_ || channels != compensation_->channels() || block_size != block_size_ || count > room ||
+      (with_sky && sky_->size() == glm::ivec3(1))) {
     block_size_ = block_size;
     blocks_ = blocksFor(std::max<std::size_t>(count, 1), block_size);
     compensation_.emplace(block_size_ * blocks_, channels);

@@ -71,7 +71,8 @@ void shadeTree(uvec2 id, Sight look) {
   float error = of_piece.w == kNoLeaf ? middle.x : 0.0;
   // The light is that of the true leaf or twig, however enlarged it is drawn.
   vec3 lit = of_piece.w == kNoLeaf ? place : middle + (place - middle) / enlargement;
-  Surface surface = wood ? woodSurface(kind, tree, normal, -look.along) : leafSurface(kind, tree, leaf, normal, -look.along);
+  Surface surface = wood ? woodSurface(kind, tree, normal, -look.along)
+                         : leafSurface(kind, tree, leaf, normal, -look.along);
   for (uint light = 0u; light < LIGHTS; ++light) {
     float bias = woodBias(wood ? dot(normal, light_frames[light].travel.xyz) : 1.0);
     Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, vec2(bias, error));

@@ -122,7 +122,8 @@ std::size_t StandData::updateSky(const DrawnStand& stand) {
     sent += ground.irradiance.size_bytes();
   }
   sent_ground_sky_ = ground.revision;
-  frame_.ground_cells = glm::vec4(ground.grid.low, 1.f / (ground.grid.cell_size * glm::vec2(glm::max(ground.grid.size, 1))));
+  frame_.ground_cells =
+      glm::vec4(ground.grid.low, 1.f / (ground.grid.cell_size * glm::vec2(glm::max(ground.grid.size, 1))));
   frame_.ground_open = glm::vec4(ground.open, ground.irradiance.empty() ? 0.f : 1.f);
   return sent;
 }
@@ -168,9 +169,9 @@ void StandData::placeGround(const DrawnStand& stand) {
   frame_.ground_albedo = glm::vec4(stand.ground_albedo, anyAbove(stand.ground_albedo, 0.f) ? 1.f : 0.f);
   frame_.period = glm::vec4(0.f);
   if (stand.period)
-    frame_.period = glm::vec4(*stand.period, stand.ground_sky.irradiance.empty()
-                                                 ? glm::vec2(ground_.centre) - 0.5f * *stand.period
-                                                 : stand.ground_sky.grid.low);
+    frame_.period =
+        glm::vec4(*stand.period, stand.ground_sky.irradiance.empty() ? glm::vec2(ground_.centre) - 0.5f * *stand.period
+                                                                     : stand.ground_sky.grid.low);
 }
 
 std::size_t StandData::sendGrids(const DrawnStand& stand) {

@@ -33,8 +33,8 @@ VolumeTexture::VolumeTexture(glm::ivec3 size, int channels) : size_(size), chann
 
 void VolumeTexture::write(glm::ivec3 corner, glm::ivec3 size, std::span<const float> values) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTextureSubImage3D(name_.get(), 0, corner.x, corner.y, corner.z, size.x, size.y, size.z, channels_ == 1 ? GL_RED : GL_RGBA,
-                      GL_FLOAT, values.data());
+  glTextureSubImage3D(name_.get(), 0, corner.x, corner.y, corner.z, size.x, size.y, size.z,
+                      channels_ == 1 ? GL_RED : GL_RGBA, GL_FLOAT, values.data());
 }
 
 void VolumeTexture::bind(unsigned unit) const {

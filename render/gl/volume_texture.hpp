@@ -7,7 +7,8 @@
 
 namespace sunfleck::gl {
 
-// A box of texels of one or four floats that shaders read with trilinear interpolation, clamped to its outermost texel centres.
+// A box of texels of one or four floats that shaders read with trilinear interpolation, clamped to its outermost texel
+// centres.
 class VolumeTexture {
  public:
   // Throws std::runtime_error when a side is longer than OpenGL allows.
