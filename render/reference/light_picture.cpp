@@ -79,15 +79,6 @@ class PicturePaths {
   struct Sent {
     std::size_t pixel;
     BandLanes<N> radiance;
-    ParallelShadows::Point from;
-  };
-
-  // With flux F arriving, what is met sends F f cos per solid angle to the camera, the BRDF or BTDF f being the same
-  // both ways: over the area of the pixel's beam, its radiance.
-  // What goes to the camera of the light that a path brings to a surface.
-  struct Sent {
-    std::size_t pixel;
-    BandLanes<N> radiance;
     Direction to_eye;
     ParallelShadows::Point from;
   };
@@ -115,16 +106,15 @@ class PicturePaths {
     for (std::size_t band = 0; band < bands_; ++band)
       tally_.add(sent.pixel * bands_ + band, double{sent.radiance[static_cast<int>(band)]});
   }
-}
 
-const RayScene::Geometry& scene_;
-const IncidentLight& light_;
-const SceneOptics<N>& optics_;
-const PixelOfPoint& pixels_;
-const std::optional<ParallelShadows>& shadows_;  // what hides from the eye, where lines of sight are parallel
-BandLanes<N> flux_;                              // of a path, by the area of a pixel's beam [1]
-std::size_t bands_;
-UnitTally& tally_;
+  const RayScene::Geometry& scene_;
+  const IncidentLight& light_;
+  const SceneOptics<N>& optics_;
+  const PixelOfPoint& pixels_;
+  const std::optional<ParallelShadows>& shadows_;  // what hides from the eye, where lines of sight are parallel
+  BandLanes<N> flux_;                              // of a path, by the area of a pixel's beam [1]
+  std::size_t bands_;
+  UnitTally& tally_;
 };
 
 }  // namespace
