@@ -152,6 +152,8 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
                        number == kLeaves ? prototype.cuts.get() : nullptr);
       for (std::size_t i = 0; i < primitives.first_triangle.size(); ++i) {
         const std::uint32_t first = primitives.first_triangle[i];
+        const std::size_t before = number == kWood ? mesh.leaf_triangles.size() : 0;
+        prototype.first_triangle.push_back(first + static_cast<std::uint32_t>(before));
         const glm::vec4 plane = planeOf(mesh, triangles[first], pivot);
         prototype.planes.push_back({plane, primitives.pair(i) ? planeOf(mesh, triangles[first + 1], pivot) : plane});
       }

@@ -62,8 +62,10 @@ class Looking {
     if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) return {kNothingSeen, 0u};
     const unsigned instance = packet.hit.instID[0][i] == RTC_INVALID_GEOMETRY_ID ? 0 : packet.hit.instID[0][i];
     const Prototype& prototype = scene_.prototypes[scene_.copies[instance].kind];
-    const std::size_t leaf_triangles = packet.hit.geomID[i] == kWood ? prototype.leaf_of_triangle.size() : 0;
-    return {instance, packet.hit.primID[i] + static_cast<unsigned>(leaf_triangles)};
+    const bool leaf = packet.hit.geomID[i] == kLeaves;
+    const bool second = (leaf ? prototype.leaf_quads : prototype.wood_quads) && packet.hit.u[i] + packet.hit.v[i] > 1.f;
+    const std::size_t primitive = packet.hit.primID[i] + (leaf ? 0 : prototype.leaf_of_primitive.size());
+    return {instance, prototype.first_triangle[primitive] + (second ? 1u : 0u)};
   }
 
   const RayScene::Geometry& scene_;

@@ -61,6 +61,7 @@ struct CutLeaves {
 struct Prototype {
   // Of each primitive's two triangles, leaves first, alike where it is one: unit normal n, and n . x on it [m].
   std::vector<std::array<glm::vec4, 2>> planes;
+  std::vector<std::uint32_t> first_triangle;     // of each primitive, among those of the leaves and then the wood
   std::vector<std::uint32_t> leaf_of_primitive;  // among the leaves of all kinds
   bool leaf_quads = false, wood_quads = false;   // whether Embree has them as quads
   std::unique_ptr<CutLeaves> cuts;               // where masks cut leaves out
