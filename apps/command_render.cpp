@@ -13,6 +13,7 @@
 #include "apps/terminal.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
 
@@ -54,7 +55,8 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   const gl::PictureEffort effort{.model = *std::ranges::find(kModels, options.model, nameOf),
                                  .samples = options.samples,
                                  .piece_pixels = options.detail,
-                                 .layers = layersOf(options)};
+                                 .layers = layersOf(options),
+                                 .exact = exactPowerTable};
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
@@ -100,20 +102,26 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
   command->add_option("-o,--output", render->output, "Picture to write: .exr (radiances) or .png")->required();
   command
       ->add_option("--model", render->model,
-                   "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); nstreamg: a better "
-                   "slab with G-factor")
-      ->check(CLI::IsMember({"ss", "spp", "sppg", "nstreamg"}));
+                   "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); sppr: that slab "
+                   "refined, with G; nstreamg: a better slab, with G; pp: the exact slab, with G")
+      ->check(CLI::IsMember([] {
+        std::vector<std::string> names;
+        for (const Model model : kModels) names.push_back(nameOf(model));
+        return names;
+      }()));
   command->add_option("--exposure", render->exposure, "Factor from radiance to brightness in a .png (default 3)")
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6]"));
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
       ->transform(wholeNumberIn(1., 4096., "a whole number, 1 to 4096"));
-  command->add_option("--samples", render->samples, "Frames averaged, each through other places of the pixels (default 4)")
+  command
+      ->add_option("--samples", render->samples, "Frames averaged, each through other places of the pixels (default 4)")
       ->transform(wholeNumberIn(1., 65536., "a whole number, 1 to 65536"));
   command
-      ->add_option("--layers", render->layers,
-                   "Layers that an .exr holds beside the picture, by their names or all: direct, single, multiple, sky "
-                   "(parts of the picture), geometry (normal, depth), foliage (leaves before and beyond, visible sun, G), "
-                   "ids (tree, triangle, kind, leaf)")
+      ->add_option(
+          "--layers", render->layers,
+          "Layers that an .exr holds beside the picture, by their names or all: direct, single, multiple, sky "
+          "(parts of the picture), geometry (normal, depth), foliage (leaves before and beyond, visible sun, G), "
+          "ids (tree, triangle, kind, leaf)")
       ->delimiter(',')
       ->check(CLI::IsMember(layerNames()));
   command

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -12,7 +13,9 @@
 #include <set>
 
 #include "plants/random_leaves.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/stand_picture.hpp"
+#include "render/shading/fragment_shading.hpp"
 #include "sky/sky_models.hpp"
 
 namespace {
@@ -41,10 +44,12 @@ struct Woods {
     scene.kinds[1].leaf = {LeafOptics{0.1f, 0.1f}, LeafOptics{0.4f, 0.3f}, LeafOptics{0.2f, 0.1f}};
     scene.stand.trees.clear();
     for (std::size_t i = 0; i < trees; ++i)
-      scene.stand.trees.push_back({.position = {3.2f * static_cast<float>(i % 3), 3.4f * static_cast<float>(i / 3), 0.f},
-                                   .kind = static_cast<std::uint32_t>(i % 2)});
+      scene.stand.trees.push_back(
+          {.position = {3.2f * static_cast<float>(i % 3), 3.4f * static_cast<float>(i / 3), 0.f},
+           .kind = static_cast<std::uint32_t>(i % 2)});
     scene.ground_albedo = glm::vec3(0.2f, 0.15f, 0.1f);
-    scene.suns = {{.zenith = 0.5f, .azimuth = 0.3f}, {.zenith = 0.9f, .azimuth = 3.f, .irradiance = {0.2f, 0.3f, 0.4f}}};
+    scene.suns = {{.zenith = 0.5f, .azimuth = 0.3f},
+                  {.zenith = 0.9f, .azimuth = 3.f, .irradiance = {0.2f, 0.3f, 0.4f}}};
     scene.sky.kind = SceneSky::Kind::uniform;
     scene.sky.irradiance = glm::dvec3(0.1, 0.2, 0.3);
   }
@@ -77,7 +82,7 @@ class Drawing {
     return gl::standPicture(context, renderer, camera, effort);
   }
   gl::Context context;
-  gl::StandRenderer renderer{context};
+  gl::StandRenderer renderer{context, exactPowerTable};
 };
 
 const std::vector<gl::Layer> kAll(gl::kLayersBesideTotal.begin(), gl::kLayersBesideTotal.end());
@@ -105,12 +110,57 @@ TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
         kinds.insert(value(image, x, y, "id.kind"));
         for (const std::string band : {"R", "G", "B"}) {
           float sum = 0.f;
-          for (const std::string part : {"direct.", "single.", "multiple.", "sky."}) sum += value(image, x, y, part + band);
+          for (const std::string part : {"direct.", "single.", "multiple.", "sky."})
+            sum += value(image, x, y, part + band);
           ASSERT_NEAR(value(image, x, y, band), sum, 1e-6f);
         }
       }
     EXPECT_EQ(trees.size(), 6u);  // five trees and none
     EXPECT_EQ(kinds, (std::set<float>{-1.f, 0.f, 1.f}));
+  }
+}
+
+// Check every model's picture pixel by pixel against C++, which shades the same fragments as the layers tell them: of
+// two kinds of trees, one under a gloss, whose lobe of roughness 0.3 magnifies roundings of directions tenfold.
+TEST(R27_StandRenderer, ShadesAsCppDoes) {
+  Woods woods;
+  woods.scene.suns.resize(1);
+  for (LeafOptics& leaf : woods.scene.kinds[1].leaf) leaf.gloss = 0.4f;
+  Drawing drawing(woods.stand());
+  const Camera camera = woods.camera();
+  const glm::vec3 to_eye = -viewAxes(camera).along;
+  for (const Model model : kModels) {
+    const Image image = drawing.picture(camera, {.model = model, .samples = 1, .layers = kAll});
+    shading::ShadingData data;
+    const std::array suns{shading::ShadingLight{.travel = glm::vec4(woods.scene.sun().light(), 0.f),
+                                                .irradiance = glm::vec4(woods.scene.sun().irradiance, 0.f)}};
+    update(data, model, woods.scene.kinds, suns, exactPowerTable);
+    const shading::FragmentShading shading(model, data);
+    int leaves = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const auto at = [&](const char* name) { return value(image, x, y, name); };
+        if (at("id.leaf") < 0.f) continue;
+        ++leaves;
+        const glm::vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
+        const shading::Surface surface =
+            shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), 0, 0, normal, to_eye);
+        const float before = at("foliage.before"), beyond = at("foliage.beyond");
+        const shading::Shaded shaded = shading.shadeByLight(surface,
+                                                            {.foliage = {before, beyond, at("foliage.visible")},
+                                                             .thickness = before + beyond + 1.f,
+                                                             .compensation = at("foliage.G")},
+                                                            0);
+        const std::array bands{"R", "G", "B"};
+        for (int band = 0; band < 3; ++band) {
+          const std::string name = bands[static_cast<std::size_t>(band)];
+          ASSERT_NEAR(at(("direct." + name).c_str()), shaded.direct[band],
+                      kShading * (1.f + 10.f * shaded.direct[band]));
+          ASSERT_NEAR(at(("multiple." + name).c_str()), shaded.multiple[band],
+                      kShading * (1.f + shaded.multiple[band]));
+        }
+      }
+    EXPECT_GT(leaves, 1000);
   }
 }
 
@@ -135,7 +185,8 @@ TEST(R24_StandRenderer, KnowsWhereEachPixelLies) {
         const glm::vec3 a = mesh.vertices[t.x] + placement.position, b = mesh.vertices[t.y] + placement.position,
                         c = mesh.vertices[t.z] + placement.position;
         const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
-        const glm::vec3 told(value(image, x, y, "normal.X"), value(image, x, y, "normal.Y"), value(image, x, y, "normal.Z"));
+        const glm::vec3 told(value(image, x, y, "normal.X"), value(image, x, y, "normal.Y"),
+                             value(image, x, y, "normal.Z"));
         EXPECT_NEAR(std::abs(glm::dot(normal, told)), 1.f, 1e-5f);
         const Sight look = sightThrough(camera, {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
         EXPECT_LT(glm::dot(told, look.along), 0.f);
@@ -182,7 +233,8 @@ TEST(R24_StandRenderer, LeavesOutWhatIsNotSeen) {
 }
 
 // (R25) Check that with fewer and larger leaves the mean radiance and coverage stay within a few parts in a hundred,
-// which is what a random part of some hundred leaves spreads, that the leaves shown are the tree's, and the work is less.
+// which is what a random part of some hundred leaves spreads, that the leaves shown are the tree's, and the work is
+// less.
 TEST(R25_StandRenderer, KeepsTheMeanWithFewerLeaves) {
   Woods woods;
   Drawing drawing(woods.stand());
@@ -195,7 +247,8 @@ TEST(R25_StandRenderer, KeepsTheMeanWithFewerLeaves) {
   woods.scene.ground_albedo = glm::vec3(0.f);
   drawing.renderer.update(woods.stand());
   const Camera camera = woods.camera(64);
-  const Image full = drawing.picture(camera, {.samples = 16}), few = drawing.picture(camera, {.samples = 16, .piece_pixels = 4.f});
+  const Image full = drawing.picture(camera, {.samples = 16}),
+              few = drawing.picture(camera, {.samples = 16, .piece_pixels = 4.f});
   EXPECT_NEAR(mean(few, "A") / mean(full, "A"), 1., 0.06);
   EXPECT_NEAR(mean(few, "G") / mean(full, "G"), 1., 0.06);
   gl::FrameTarget target({64, 64});
@@ -220,7 +273,8 @@ TEST(R24_StandRenderer, TilesArePartsOfThePicture) {
   int differ = 0;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 1200; ++x)
-      differ += std::abs(values[4 * static_cast<std::size_t>((39 - y) * 1200 + x) + 1] - tiled.values[tiled.at(x, y, 1)]) > kShading;
+      differ += std::abs(values[4 * static_cast<std::size_t>((39 - y) * 1200 + x) + 1] -
+                         tiled.values[tiled.at(x, y, 1)]) > kShading;
   EXPECT_LE(differ, 48);
 }
 
@@ -277,7 +331,11 @@ TEST(R24_StandRenderer, DrawsWhatIsHardlyThere) {
 TEST(R24_StandRenderer, TellsWhatIsUnderTheCursor) {
   Woods woods(4);
   Drawing drawing(woods.stand());
-  Camera camera{.target = woods.scene.stand.trees[3].position, .elevation = 0.5f * kPi, .half_width = 12.f, .width = 65, .height = 65};
+  Camera camera{.target = woods.scene.stand.trees[3].position,
+                .elevation = 0.5f * kPi,
+                .half_width = 12.f,
+                .width = 65,
+                .height = 65};
   gl::FrameTarget target({65, 65});
   const gl::View view{.camera = camera};
   drawing.renderer.draw(view, target);

@@ -85,7 +85,7 @@ struct StandRenderer::Programs {
   const ShadingBuffers& buffersOf(Model model, const StandData& stand) {
     auto found = buffers.find(model);
     if (found == buffers.end()) {
-      update(data[model], model, stand.treeKinds(), shadingLights(stand.lights()), exact);
+      shading::update(data[model], model, stand.treeKinds(), shadingLights(stand.lights()), exact);
       found = buffers.emplace(model, ShadingBuffers(data[model])).first;
     }
     return found->second;
