@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/gl/stand_renderer.hpp"
@@ -23,7 +24,7 @@ struct Ready {
   Scene scene;
   StandGeometry geometry;
   std::unique_ptr<gl::Context> context = std::make_unique<gl::Context>();
-  std::unique_ptr<gl::StandRenderer> renderer = std::make_unique<gl::StandRenderer>(*context);
+  std::unique_ptr<gl::StandRenderer> renderer = std::make_unique<gl::StandRenderer>(*context, exactPowerTable);
   gl::View view;
 
   explicit Ready(const std::string& name) : scene(readScene(name)) {
@@ -105,7 +106,10 @@ void frame(benchmark::State& state, int rows, float piece_pixels) {
       if (kModels[i] == Model::sppg) state.SetIterationTime(cost.visible_seconds + cost.shading_seconds);
     }
   const auto milliseconds = [&](double sum) { return 1e3 * sum / static_cast<double>(state.iterations()); };
-  const Times &ss = times[0], &sppg = times[2], &nstreamg = times[3];
+  const auto of = [&](Model model) {
+    return times[static_cast<std::size_t>(std::ranges::find(kModels, model) - kModels.begin())];
+  };
+  const Times ss = of(Model::ss), sppg = of(Model::sppg), nstreamg = of(Model::nstreamg), pp = of(Model::pp);
   state.counters["visible_ms"] = milliseconds(sppg.visible);
   state.counters["cpu_ms"] = milliseconds(sppg.cpu);
   state.counters["ss_cpu_ms"] = milliseconds(ss.cpu);
@@ -113,6 +117,7 @@ void frame(benchmark::State& state, int rows, float piece_pixels) {
   state.counters["nstreamg/ss"] = nstreamg.all() / ss.all();
   state.counters["sppg/ss_cpu"] = sppg.cpu / ss.cpu;
   state.counters["nstreamg/ss_cpu"] = nstreamg.cpu / ss.cpu;
+  state.counters["pp/ss_cpu"] = pp.cpu / ss.cpu;
   state.counters["triangles"] = static_cast<double>(cost.triangles);
   state.counters["calls"] = static_cast<double>(cost.draw_calls);
   state.SetLabel(ready.context->renderer());
@@ -125,7 +130,8 @@ BENCHMARK_CAPTURE(frame, cherry64, 8, kDetail)->Unit(benchmark::kMillisecond)->U
 
 }  // namespace
 
-// Stands of 1,024 trees take seconds to prepare: they are measured when asked for, by --benchmark_filter=frame/cherry1024.
+// Stands of 1,024 trees take seconds to prepare: they are measured when asked for, by
+// --benchmark_filter=frame/cherry1024.
 int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i)
     if (std::string(argv[i]).find("cherry1024") != std::string::npos)
