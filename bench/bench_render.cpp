@@ -115,6 +115,7 @@ void frame(benchmark::State& state, int rows, float piece_pixels) {
   state.counters["ss_cpu_ms"] = milliseconds(ss.cpu);
   state.counters["sppg/ss"] = sppg.all() / ss.all();
   state.counters["nstreamg/ss"] = nstreamg.all() / ss.all();
+  state.counters["spp/ss_cpu"] = of(Model::spp).cpu / ss.cpu;
   state.counters["sppg/ss_cpu"] = sppg.cpu / ss.cpu;
   state.counters["nstreamg/ss_cpu"] = nstreamg.cpu / ss.cpu;
   state.counters["pp/ss_cpu"] = pp.cpu / ss.cpu;
