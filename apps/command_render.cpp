@@ -129,7 +129,8 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   const gl::PictureEffort effort{.model = *modelNamed(options.model),
                                  .samples = options.samples,
                                  .piece_pixels = options.detail,
-                                 .layers = layersOf(options)};
+                                 .layers = layersOf(options),
+                                 .exact = exactPowerTable};
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
