@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/require.hpp"
+#include "render/reference/detail/primitives.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
 
 namespace sunfleck {
@@ -16,7 +17,6 @@ using namespace detail;
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr unsigned kWood = 1;                      // Embree's geometry number
 constexpr int kSide = 4, kPacket = kSide * kSide;  // pixels looked at together
 constexpr int kTile = 32;                          // pixels along a task's side
 
