@@ -71,17 +71,17 @@ std::string table(std::span<const Validation> validations) {
   for (const Validation& v : validations) {
     text += fmt::format("\n{:<12} RMS error against Monte Carlo, mean depth {:.2f} in {:.2f}\n", kindOf(v.scene),
                         v.mean_depth, v.mean_thickness);
-    text += fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>12}\n", "model", "by category", "paper",
+    text += fmt::format("  {:<8} {:>12} {:>8} {:>12} {:>10} {:>12} {:>12}\n", "model", "by category", "paper",
                         "by leaves", "per leaf", "total light", "time");
     for (const ModelResult& m : v.models) {
       const std::optional<double> paper = paperError(v, m.model);
-      text += fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>9.0f} ms\n", labelOf(m.model),
+      text += fmt::format("  {:<8} {:>12} {:>8} {:>12} {:>10} {:>12} {:>9.0f} ms\n", labelOf(m.model),
                           percent(m.errors.rms_category), paper ? fmt::format("{:.3g} %", 100. * *paper) : "-",
                           percent(m.errors.rms_weighted), percent(m.errors.rms_leaf), percent(m.errors.bias, "+"),
                           1e3 * (m.prepare_seconds + m.shade_seconds));
     }
     text +=
-        fmt::format("  {:<6} {:>12} {:>8} {:>12} {:>10} {:>12} {:>10.1f} s   ({:.3g} million paths)\n", "noise", "", "",
+        fmt::format("  {:<8} {:>12} {:>8} {:>12} {:>10} {:>12} {:>10.1f} s   ({:.3g} million paths)\n", "noise", "", "",
                     v.category_noise ? fmt::format("{:.2f} %", 100. * *v.category_noise) : "-",
                     percent(v.reference_noise), "", v.reference.seconds, static_cast<double>(v.reference.paths) * 1e-6);
     if (!v.reference_noise) text += "  no path of Monte Carlo lit a leaf: there is nothing to compare with\n";

@@ -13,6 +13,7 @@
 #include "apps/trace_output.hpp"
 #include "core/elapsed.hpp"
 #include "core/require.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
 #include "render/radians.hpp"
@@ -176,7 +177,8 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
     for (const TreeKind& kind : sceneOf(task, optics).kinds)
       leaf.push_back(kind.leaf[static_cast<std::size_t>(optics.band)]);
     for (const Model model : sweep_.models) {
-      const ModelErrors errors = modelErrors(leafIrradiance(model, geometry, leaf), result.leaf_irradiance, of_depths);
+      const ModelErrors errors =
+          modelErrors(leafIrradiance(model, geometry, leaf, exactPowerTable), result.leaf_irradiance, of_depths);
       rows.push_back(fmt::format("{},{},{},{},{},{}", empty, noise, orNothing(errors.rms_category),
                                  orNothing(errors.rms_weighted), orNothing(errors.rms_leaf), orNothing(errors.bias)));
     }

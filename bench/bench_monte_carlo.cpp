@@ -7,6 +7,7 @@
 #include "plants/random_leaves.hpp"
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
+#include "render/reference/visible_surfaces.hpp"
 
 // Monte Carlo on a crown like the reference tree: 9,000 squares of 5 cm, 18,000 triangles, in an ellipsoid of
 // 2 x 2 x 3 m with spherical leaf angles, albedo 0.95, sun overhead. One thread, so that time is CPU time.
@@ -78,5 +79,29 @@ void primaryRays(benchmark::State& state) {
   rate(state, "rays_per_cpu_s", rays);
 }
 BENCHMARK(primaryRays)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+// What 512 x 512 lines of sight see in a square stand of that many trees, 2.5 m apart, all in the picture, on all
+// threads.
+void visible(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  Stand stand{.trees = {}};
+  for (int i = 0; i < side * side; ++i)
+    stand.trees.push_back(
+        {.position = {2.5f * static_cast<float>(i % side), 2.5f * static_cast<float>(i / side), 0.f}});
+  const RayScene made(tree(), stand, true);
+  const float half = 1.8f * static_cast<float>(side);
+  PixelRays rays = picture();
+  const glm::vec3 right = glm::normalize(rays.right_step), down = glm::normalize(rays.down_step);
+  rays.right_step = half / 256.f * right;
+  rays.down_step = half / 256.f * down;
+  rays.corner = made.box().centre() - half * (right + down);
+  double seen = 0.;  // share of the lines that see a tree
+  for (const glm::uvec2& first : visibleSurfaces(made, rays, glm::vec2(0.5f)))
+    seen += (first.x != kNothingSeen) / 262144.;
+  if (seen < 0.15 || seen > 0.3) return state.SkipWithError("trees are missing");
+  for (auto _ : state) benchmark::DoNotOptimize(visibleSurfaces(made, rays, glm::vec2(0.5f)).data());
+  state.counters["seen"] = seen;
+}
+BENCHMARK(visible)->Arg(8)->Arg(32)->Arg(100)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace

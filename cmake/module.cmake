@@ -55,7 +55,7 @@ function(sunfleck_module)
     endif()
   endforeach()
 
-  file(GLOB files CONFIGURE_DEPENDS *.hpp *.cpp *.glsl *.vert *.frag detail/*)
+  file(GLOB files CONFIGURE_DEPENDS *.hpp *.cpp *.glsl *.vert *.frag *.comp detail/*)
   foreach(file IN LISTS files)
     file(STRINGS "${file}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
     foreach(line IN LISTS includes)

@@ -79,6 +79,27 @@ class LentWorkspace {
   std::unique_ptr<Workspace> lent_;
 };
 
+glm::vec3 projectedTo(const Axes& axes, const glm::vec3& point) {
+  return {glm::dot(point, axes.right), glm::dot(point, axes.up), glm::dot(point, axes.along)};
+}
+
+// Leaves the vertices' (right, up, depth) in `projected`.
+OpacityMapFrame frameOf(const TreeMesh& mesh, Direction along, int resolution, std::vector<glm::vec3>& projected) {
+  assert(resolution >= 1);
+  OpacityMapFrame frame{.axes = axesAlong(along)};
+  projected.resize(mesh.vertices.size());
+  tbb::parallel_for(Range(0, mesh.vertices.size(), kTask), [&](const Range& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) projected[i] = projectedTo(frame.axes, mesh.vertices[i]);
+  });
+  Bounds box = boxOf(mesh.leaf_triangles, projected.data());
+  box.include(boxOf(mesh.wood_triangles, projected.data()));
+  const glm::vec2 extent = box.size();
+  frame.pixel_size = std::max({extent.x, extent.y, 1e-6f}) / static_cast<float>(resolution);
+  frame.size = glm::clamp(glm::ivec2(glm::ceil(extent / frame.pixel_size)), 1, resolution);
+  frame.corner = glm::vec2(box.centre()) - 0.5f * frame.pixel_size * glm::vec2(frame.size);
+  return frame;
+}
+
 // A crossing as a number that is greater the deeper it lies, and of equal ones the one with the greater leaf.
 constexpr std::uint32_t kSign = 1u << 31;
 
@@ -112,28 +133,25 @@ void sortByDepth(std::span<Rank> line, Crossing* sorted) {
 
 }  // namespace
 
-DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, Wood wood)
-    : axes_(axesAlong(along)) {
-  assert(resolution >= 1);
+OpacityMapFrame opacityMapFrame(const TreeMesh& mesh, Direction along, int resolution) {
+  LentWorkspace lent;
+  return frameOf(mesh, along, resolution, (*lent).projected);
+}
+
+DeepOpacityMap::DeepOpacityMap(const OpacityMapFrame& frame, Arrays arrays)
+    : frame_(frame), arrays_(std::move(arrays)) {}
+
+DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolution, Wood wood) {
   const bool with_wood = wood != Wood::none;
   LentWorkspace lent;
   Workspace& workspace = *lent;
-  auto& projected = workspace.projected;
-  projected.resize(mesh.vertices.size());
-  tbb::parallel_for(Range(0, mesh.vertices.size(), kTask), [&](const Range& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) projected[i] = inMap(mesh.vertices[i]);
-  });
-  Bounds box = boxOf(mesh.leaf_triangles, projected.data());
-  box.include(boxOf(mesh.wood_triangles, projected.data()));
-  const glm::vec2 extent = box.size();
-  pixel_size_ = std::max({extent.x, extent.y, 1e-6f}) / static_cast<float>(resolution);
-  size_ = glm::clamp(glm::ivec2(glm::ceil(extent / pixel_size_)), 1, resolution);
-  corner_ = glm::vec2(box.centre()) - 0.5f * pixel_size_ * glm::vec2(size_);
-
+  const auto& projected = workspace.projected;
+  frame_ = frameOf(mesh, along, resolution, workspace.projected);
+  const glm::ivec2 size = frame_.size;
   const detail::PixelGrid pixel_grid{
-      .corner = corner_, .pixels_per_metre = 1. / double{pixel_size_}, .columns = size_.x, .rows = size_.y};
+      .corner = frame_.corner, .pixels_per_metre = 1. / double{frame_.pixel_size}, .columns = size.x, .rows = size.y};
   int band_rows_log2 = 0;  // each band has a power of two of rows
-  while ((size_.y - 1) >> band_rows_log2 >= int{kBands}) ++band_rows_log2;
+  while ((size.y - 1) >> band_rows_log2 >= int{kBands}) ++band_rows_log2;
   for (auto& of_thread : workspace.threads)
     for (Found& band : of_thread.found) {
       band.leaves.clear();
@@ -141,7 +159,7 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
       band.crossings = 0;
     }
   const detail::ScanConversion scan = detail::scanConversion();
-  const std::size_t room = std::max(kTask, static_cast<std::size_t>(size_.y));
+  const std::size_t room = std::max(kTask, static_cast<std::size_t>(size.y));
   const auto find = [&](const std::vector<glm::uvec3>& triangles, const auto& put) {
     tbb::parallel_for(Range(0, triangles.size(), kTask), [&](const Range& range) {
       Workspace::OfThread& work = workspace.threads.local();
@@ -175,18 +193,18 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
           counted.back(), "below 2^32: of fewer pixels");
   std::array<std::uint32_t, kBands + 1> band_first{};
   std::copy(counted.begin(), counted.end(), band_first.begin());
-  const std::size_t pixels = pixelNumber(0, size_.y);
-  first_ = std::make_unique_for_overwrite<std::uint32_t[]>(pixels + 1);
-  first_[pixels] = band_first.back();
-  crossings_ = std::make_unique_for_overwrite<Crossing[]>(band_first.back());
-  if (with_wood) wood_depth_ = std::make_unique_for_overwrite<float[]>(pixels);
-  if (wood == Wood::first_and_last) last_wood_depth_ = std::make_unique_for_overwrite<float[]>(pixels);
+  const std::size_t pixels = pixelNumber(0, size.y);
+  arrays_.first = std::make_unique_for_overwrite<std::uint32_t[]>(pixels + 1);
+  arrays_.first[pixels] = band_first.back();
+  arrays_.crossings = std::make_unique_for_overwrite<Crossing[]>(band_first.back());
+  if (with_wood) arrays_.wood_depth = std::make_unique_for_overwrite<float[]>(pixels);
+  if (wood == Wood::first_and_last) arrays_.last_wood_depth = std::make_unique_for_overwrite<float[]>(pixels);
   const auto firstPixel = [&](const detail::Span& span) {
     return pixelNumber(static_cast<int>(span.column), static_cast<int>(span.row));
   };
   tbb::parallel_for(std::size_t{0}, kBands, [&](std::size_t band) {
     const auto rowsBefore = [&](std::size_t bands) {
-      return std::min(size_.y, static_cast<int>(bands) << band_rows_log2);
+      return std::min(size.y, static_cast<int>(bands) << band_rows_log2);
     };
     const std::size_t begin = pixelNumber(0, rowsBefore(band)), end = pixelNumber(0, rowsBefore(band + 1));
     Workspace::OfThread& work = workspace.threads.local();
@@ -214,24 +232,26 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
     std::uint32_t first = 0;
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       const std::uint32_t of_pixel = next[pixel - begin] - first;
-      first_[pixel] = band_first[band] + first;
-      if (of_pixel) sortByDepth(std::span(work.crossings).subspan(first, of_pixel), &crossings_[first_[pixel]]);
+      arrays_.first[pixel] = band_first[band] + first;
+      if (of_pixel)
+        sortByDepth(std::span(work.crossings).subspan(first, of_pixel), &arrays_.crossings[arrays_.first[pixel]]);
       first += of_pixel;
     }
     if (!with_wood) return;
-    for (std::size_t pixel = begin; pixel < end; ++pixel) wood_depth_[pixel] = std::numeric_limits<float>::infinity();
+    for (std::size_t pixel = begin; pixel < end; ++pixel)
+      arrays_.wood_depth[pixel] = std::numeric_limits<float>::infinity();
     for (const auto* of_thread : finders)
       for (const detail::Span& span : of_thread->found[band].wood) {
-        float* const depth = &wood_depth_[firstPixel(span)];
+        float* const depth = &arrays_.wood_depth[firstPixel(span)];
         for (std::uint32_t i = 0; i < span.length; ++i)
           depth[i] = std::min(depth[i], span.depth + static_cast<float>(i) * span.slope);
       }
     if (wood != Wood::first_and_last) return;
     for (std::size_t pixel = begin; pixel < end; ++pixel)
-      last_wood_depth_[pixel] = -std::numeric_limits<float>::infinity();
+      arrays_.last_wood_depth[pixel] = -std::numeric_limits<float>::infinity();
     for (const auto* of_thread : finders)
       for (const detail::Span& span : of_thread->found[band].wood) {
-        float* const depth = &last_wood_depth_[firstPixel(span)];
+        float* const depth = &arrays_.last_wood_depth[firstPixel(span)];
         for (std::uint32_t i = 0; i < span.length; ++i)
           depth[i] = std::max(depth[i], span.depth + static_cast<float>(i) * span.slope);
       }
@@ -240,23 +260,24 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
 
 std::span<const Crossing> DeepOpacityMap::crossings(int x, int y) const {
   const std::size_t pixel = pixelNumber(x, y);
-  return crossings().subspan(first_[pixel], first_[pixel + 1] - first_[pixel]);
+  return crossings().subspan(arrays_.first[pixel], arrays_.first[pixel + 1] - arrays_.first[pixel]);
 }
 
 glm::vec3 DeepOpacityMap::inMap(glm::vec3 point) const {
-  return {glm::dot(point, axes_.right), glm::dot(point, axes_.up), glm::dot(point, axes_.along)};
+  return projectedTo(frame_.axes, point);
 }
 
 glm::vec3 DeepOpacityMap::inSpace(int x, int y, float depth) const {
-  const glm::vec2 at = corner_ + pixel_size_ * (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f);
-  return at.x * axes_.right + at.y * axes_.up + depth * axes_.along;
+  const glm::vec2 at =
+      frame_.corner + frame_.pixel_size * (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f);
+  return at.x * frame_.axes.right + at.y * frame_.axes.up + depth * frame_.axes.along;
 }
 
 DeepOpacityMap::Counts DeepOpacityMap::counts(glm::vec3 point, std::uint32_t own) const {
   const glm::vec3 at = inMap(point);
-  const glm::vec2 pixel = (glm::vec2(at) - corner_) / pixel_size_;
-  if (!(pixel.x >= 0.f && pixel.y >= 0.f && pixel.x < static_cast<float>(size_.x) &&
-        pixel.y < static_cast<float>(size_.y)))
+  const glm::vec2 pixel = (glm::vec2(at) - frame_.corner) / frame_.pixel_size;
+  if (!(pixel.x >= 0.f && pixel.y >= 0.f && pixel.x < static_cast<float>(frame_.size.x) &&
+        pixel.y < static_cast<float>(frame_.size.y)))
     return {};
   const std::span<const Crossing> line = crossings(static_cast<int>(pixel.x), static_cast<int>(pixel.y));
   const auto beyond =

@@ -26,6 +26,7 @@ struct FoliageEffort {
   int sample_resolution = 256;                   // pixels along the longer side of the maps along them
   int light_resolution = 512;                    // pixels along the longer side of a light's maps
   int cells = 16;                                // along the longest side of a tree
+  MapMaker light_map{};  // of a light's maps, called where they are asked for; none: by the processor
 };
 
 // Level ground in cells. Cell (x, y) is number y * size.x + x.

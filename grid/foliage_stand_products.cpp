@@ -36,8 +36,12 @@ const DeepOpacityMap& FoliageStand::lightMap(std::size_t prototype, std::size_t 
   assert(light < lights_.size());
   const std::size_t one = member(prototype, light);
   graph_.bring(light_maps_, std::span(&one, 1), [&](std::size_t) {
-    prototypes_[prototype].light_maps[light].emplace(*prototypes_[prototype].mesh, lights_[light],
-                                                     effort_.light_resolution);
+    const auto& mesh = prototypes_[prototype].mesh;
+    auto& map = prototypes_[prototype].light_maps[light];
+    if (effort_.light_map)
+      map.emplace(effort_.light_map(mesh, lights_[light], effort_.light_resolution));
+    else
+      map.emplace(*mesh, lights_[light], effort_.light_resolution);
   });
   return *prototypes_[prototype].light_maps[light];
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <optional>
 #include <span>
+#include <stdexcept>
 
 #include "grid/cell_grid.hpp"
 #include "spp/slab.hpp"
@@ -23,21 +25,81 @@ constexpr float kMu0 = 1.f;  // the slab's normal is the light's axis
 // Leaves whose powers are computed at once: few enough to stay in the nearest cache.
 constexpr std::size_t kBlock = 1024;
 
+// P+, direct light included, and P- of a model before G.
+class ModelPowers {
+ public:
+  ModelPowers(Model model, const LeafOptics& optics, const spp::PowerTableOf& exact) : model_(model), optics_(optics) {
+    if (model == Model::nstreamg) {
+      constants_ = spp::nStreamConstants(spp::sphericalLeaves(optics), kStreams, 1);
+      streams_.emplace(*constants_);
+    }
+    if (model == Model::sppr) table_ = spp::refinedPowerTable(optics);
+    if (model == Model::pp) {
+      if (!exact) throw std::invalid_argument("the model pp needs the exact solution");
+      table_ = exact(optics);
+    }
+  }
+
+  void operator()(std::span<const float> depth, std::span<const float> thickness, std::span<float> down,
+                  std::span<float> up) const {
+    switch (model_) {
+      case Model::ss:
+        for (std::size_t i = 0; i < depth.size(); ++i) {
+          down[i] = spp::directPower(depth[i], kMu0);
+          up[i] = 0.f;
+        }
+        break;
+      case Model::spp:
+      case Model::sppg:
+        spp::sppPowers(depth, thickness, kMu0, optics_.albedo(),
+                       spp::sphericalLeafForwardShare(optics_.reflectance, optics_.transmittance), down, up);
+        break;
+      case Model::nstreamg:
+        inAreaIndex(depth, thickness, down, up);
+        break;
+      case Model::sppr:
+      case Model::pp:
+        for (std::size_t i = 0; i < depth.size(); ++i) {
+          const spp::SlabPowers diffuse = table_.at(depth[i], thickness[i]);
+          down[i] = spp::directPower(depth[i], kMu0) + diffuse.down;
+          up[i] = diffuse.up;
+        }
+        break;
+    }
+  }
+
+ private:
+  static constexpr int kStreams = 2;
+
+  // The streams' depth is leaf area index.
+  void inAreaIndex(std::span<const float> depth, std::span<const float> thickness, std::span<float> down,
+                   std::span<float> up) const {
+    const auto per_crossing = static_cast<float>(1. / constants_->beam_projection);
+    std::array<float, kBlock> area_before, area;
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      area_before[i] = per_crossing * depth[i];
+      area[i] = per_crossing * thickness[i];
+    }
+    streams_->powers(std::span(area_before).first(depth.size()), std::span(area).first(depth.size()), down, up);
+  }
+
+  Model model_;
+  LeafOptics optics_;
+  std::optional<spp::StreamConstants> constants_;
+  std::optional<spp::StreamArrays> streams_;
+  spp::PowerTable table_;
+};
+
 // Adds to `sum` what each leaf of a block receives in one tree of the stand.
-void addIrradiance(Model model, std::span<const float> projection, std::span<const float> depth,
-                   std::span<const float> thickness, std::span<const float> compensation, const LeafOptics& optics,
-                   std::span<float> sum) {
+void addIrradiance(const ModelPowers& model, std::span<const float> projection, std::span<const float> depth,
+                   std::span<const float> thickness, std::span<const float> compensation, std::span<float> sum) {
   std::array<float, kBlock> down, up;
   const std::size_t leaves = sum.size();
-  if (model != Model::ss)
-    spp::sppPowers(depth, thickness, kMu0, optics.albedo(),
-                   spp::sphericalLeafForwardShare(optics.reflectance, optics.transmittance),
-                   std::span(down).first(leaves), std::span(up).first(leaves));
+  model(depth, thickness, std::span(down).first(leaves), std::span(up).first(leaves));
   for (std::size_t i = 0; i < leaves; ++i) {
     const float direct = spp::directPower(depth[i], kMu0);
-    spp::SlabPowers powers{.down = direct, .up = 0.f};
-    if (model != Model::ss) powers = {.down = down[i], .up = up[i]};
-    if (model == Model::sppg) powers = spp::compensated(powers, direct, compensation[i]);
+    spp::SlabPowers powers{.down = down[i], .up = up[i]};
+    if (!compensation.empty()) powers = spp::compensated(powers, direct, compensation[i]);
     sum[i] += spp::leafIrradiance(projection[i], direct, powers);
   }
 }
@@ -84,9 +146,11 @@ LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const 
   return geometry;
 }
 
-std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, std::span<const LeafOptics> optics) {
+std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, std::span<const LeafOptics> optics,
+                                  const spp::PowerTableOf& exact) {
   std::vector<float> irradiance(geometry.first_leaf.back());
   for (std::uint32_t kind = 0; kind < optics.size(); ++kind) {
+    const ModelPowers powers(model, optics[kind], exact);
     const std::size_t begin = geometry.first_leaf[kind], leaves = geometry.first_leaf[kind + 1] - begin;
     const auto trees = static_cast<float>(std::ranges::count(geometry.scene_kind_of_tree, kind));
     tbb::parallel_for(std::size_t{0}, (leaves + kBlock - 1) / kBlock, [&](std::size_t block) {
@@ -95,9 +159,9 @@ std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, std
       const std::span<float> sum = std::span(irradiance).subspan(begin + first, count);
       for (std::size_t tree = 0; tree < geometry.depths.size(); ++tree)
         if (geometry.scene_kind_of_tree[tree] == kind)
-          addIrradiance(model, part(geometry.projections[geometry.kind_of_tree[tree]]),
+          addIrradiance(powers, part(geometry.projections[geometry.kind_of_tree[tree]]),
                         part(geometry.depths[tree].depth), part(geometry.depths[tree].thickness),
-                        part(geometry.compensation[tree]), optics[kind], sum);
+                        needsCompensation(model) ? part(geometry.compensation[tree]) : std::span<const float>(), sum);
       for (float& value : sum) value /= trees;
     });
   }

@@ -9,6 +9,7 @@
 #include "render/model.hpp"
 #include "render/scene.hpp"
 #include "render/stand_geometry.hpp"
+#include "spp/power_table.hpp"
 
 namespace sunfleck {
 
@@ -30,7 +31,9 @@ LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const 
 // (R7) Irradiance of each leaf of the prototypes, kind after kind, both sides together per one-sided area, for sun
 // irradiance 1 on a plane facing the sun: the mean over the stand's trees of the kind [1].
 //   optics  of each kind of the scene
-std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, std::span<const LeafOptics> optics);
+//   exact   table of the exact solution, for the models that need it; without it they throw std::invalid_argument
+std::vector<float> leafIrradiance(Model model, const LeafGeometry& geometry, std::span<const LeafOptics> optics,
+                                  const spp::PowerTableOf& exact = {});
 
 // Depth and thickness of each leaf, kind after kind, the mean over the stand's trees of the kind.
 LeafDepths meanDepths(const LeafGeometry& geometry);

@@ -10,10 +10,26 @@ std::string nameOf(Model model) {
       return "spp";
     case Model::sppg:
       return "sppg";
+    case Model::sppr:
+      return "sppr";
     case Model::nstreamg:
       return "nstreamg";
+    case Model::pp:
+      return "pp";
   }
   return {};
+}
+
+std::optional<Model> modelNamed(std::string_view name) {
+  for (const Model model : kModels)
+    if (nameOf(model) == name) return model;
+  return std::nullopt;
+}
+
+std::string modelNames() {
+  std::string names;
+  for (const Model model : kModels) names += (names.empty() ? "" : ", ") + nameOf(model);
+  return names;
 }
 
 bool needsCompensation(Model model) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace sunfleck {
 
@@ -10,10 +12,14 @@ enum class Model {
   ss,        // single scattering: light that met no leaf before
   spp,       // simplified plane-parallel slab
   sppg,      // that, compensated for the crown's edge by G
+  sppr,      // SPP refined by one more scattering, with G
   nstreamg,  // a slab by two streams in each half, with G
+  pp,        // the exact slab, from a table, with G
 };
-inline constexpr std::array kModels{Model::ss, Model::spp, Model::sppg, Model::nstreamg};
-std::string nameOf(Model model);      // "ss", "spp", "sppg", "nstreamg"
+inline constexpr std::array kModels{Model::ss, Model::spp, Model::sppg, Model::sppr, Model::nstreamg, Model::pp};
+std::string nameOf(Model model);  // "ss", "spp" ...
+std::optional<Model> modelNamed(std::string_view name);
+std::string modelNames();             // "ss, spp ...", for people
 bool needsCompensation(Model model);  // whether it asks for G
 
 }  // namespace sunfleck

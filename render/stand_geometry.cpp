@@ -140,11 +140,12 @@ GeometryNeeds needsOf(Model model) {
   return {.compensation = needsCompensation(model), .ground_light = needsCompensation(model)};
 }
 
-StandGeometry::StandGeometry(const GeometryEffort& effort)
+StandGeometry::StandGeometry(const GeometryEffort& effort, MapMaker light_map)
     : foliage_(std::make_unique<FoliageStand>(FoliageEffort{.axes = spreadAxes(effort.sample_directions / 2),
                                                             .sample_resolution = effort.sample_resolution,
                                                             .light_resolution = effort.light_resolution,
-                                                            .cells = effort.cells})) {
+                                                            .cells = effort.cells,
+                                                            .light_map = std::move(light_map)})) {
   static_assert(FoliageStand::kMostLights == kMostSuns);
 }
 

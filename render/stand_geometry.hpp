@@ -74,7 +74,8 @@ struct StandKind {
 // and sky light of the cells. It serves one scene after another and computes only what the next one changes.
 class StandGeometry {
  public:
-  explicit StandGeometry(const GeometryEffort& effort = {});
+  //   light_map  makes the lights' maps, called by the thread that updates; none: the processor does
+  explicit StandGeometry(const GeometryEffort& effort = {}, MapMaker light_map = {});
 
   // Brings the lights' maps up to date for the scene, and what else is needed of the trees listed. Throws InvalidInput
   // as requireDrawable() and sunAndSky() do, and std::runtime_error("interrupted") when `progress` ends it: what is

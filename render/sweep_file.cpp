@@ -80,10 +80,11 @@ void readModels(SweepFile& sweep, SceneTable& table) {
   sweep.monte_carlo = false;
   for (const std::string& name : table.texts("models")) {
     if (name == "mc") sweep.monte_carlo = true;
-    const auto found = std::find_if(kModels.begin(), kModels.end(), [&](Model model) { return nameOf(model) == name; });
-    if (found != kModels.end()) sweep.models.push_back(*found);
-    if (name != "mc" && found == kModels.end())
-      throw InvalidInput(fmt::format("{}: models has \"{}\": must be of mc, ss, spp, sppg", sweep.path.string(), name));
+    const std::optional<Model> model = modelNamed(name);
+    if (model) sweep.models.push_back(*model);
+    if (name != "mc" && !model)
+      throw InvalidInput(
+          fmt::format("{}: models has \"{}\": must be of mc, {}", sweep.path.string(), name, modelNames()));
   }
 }
 
@@ -151,8 +152,8 @@ std::string sweepFileHelp() {
 stands, one number will do; every key but scenes may be left out.
 
 scenes = ["cherry", "orchard.toml"]   # built-in scenes, scene files and meshes; files are sought beside this one
-models = ["mc"]                       # mc: Monte Carlo's own figures; ss, spp, sppg: errors of these models against it,
-                                      # as validate tells them
+models = ["mc"]                       # mc: Monte Carlo's own figures; ss, spp, sppg, sppr, nstreamg, pp: errors of these
+                                      # models against it, as validate tells them
 
 [sun]                                 # every zenith angle with every azimuth; the scene's own if not given
 zenith_deg = [0, 30, 60]              # 0 to 89.9

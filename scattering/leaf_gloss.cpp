@@ -5,8 +5,12 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "scattering/detail/gloss_text.hpp"
+
 namespace sunfleck {
 namespace {
+
+using namespace gloss;
 
 constexpr double kRootPi = 1. / std::numbers::inv_sqrtpi;
 
@@ -33,7 +37,7 @@ double visibleSlope(double c, double s, double u) {
 LeafGloss::LeafGloss(float roughness) : roughness_(roughness) {
   double mean = 0., before = 0.;
   for (std::size_t i = 0; i < albedo_.size(); ++i) {
-    const double root = static_cast<double>(i) / kIntervals, cosine = root * root;
+    const double root = static_cast<double>(i) / kGlossAlbedos, cosine = root * root;
     albedo_[i] = static_cast<float>(integratedAlbedo(cosine));
     if (i > 0)
       mean += (cosine - before) *
@@ -63,32 +67,21 @@ double LeafGloss::integratedAlbedo(double cosine) const {
 }
 
 float LeafGloss::facets(const glm::vec3& half_way) const {
-  const float cosine_squared = half_way.z * half_way.z, m_squared = roughness_ * roughness_;
-  const float tangent_squared = (half_way.x * half_way.x + half_way.y * half_way.y) / cosine_squared;
-  return std::numbers::inv_pi_v<float> * std::exp(-tangent_squared / m_squared) /
-         (m_squared * cosine_squared * cosine_squared);
+  return glossFacets(half_way.x * half_way.x + half_way.y * half_way.y, half_way.z, roughness_);
 }
 
 float LeafGloss::visible(float cosine) const {
-  const float spread = roughness_ * std::sqrt(std::max(0.f, (1.f - cosine) * (1.f + cosine)));
-  const float a = cosine / spread;  // infinite along the normal
-  return 0.5f *
-         (cosine * std::erfc(-a) + spread * std::numbers::inv_sqrtpi_v<float> * (a < 8.f ? std::exp(-a * a) : 0.f));
+  return glossVisible(cosine, roughness_);
 }
 
 float LeafGloss::brdf(const glm::vec3& to_eye, const glm::vec3& to_light) const {
-  const float eye = to_eye.z, light = to_light.z;
-  // With heights that are the same for masking and shadowing: 1 / G = visible(mu) / mu + visible(mu') / mu' - 1.
-  const float unmasked = visible(eye) * light + visible(light) * eye - eye * light;
-  return facets(glm::normalize(to_eye + to_light)) / (4.f * unmasked);
+  return glossBrdf(to_eye.z, to_light.z, facets(glm::normalize(to_eye + to_light)), roughness_);
 }
 
 float LeafGloss::albedo(float cosine) const {
-  const float at = std::sqrt(std::clamp(cosine, 0.f, 1.f)) * kIntervals;
-  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(at), kIntervals - 1);
-  const auto low = static_cast<float>(i);
-  // Linear in the cosine, as the mean takes it to be, between nodes at its even roots.
-  return albedo_[i] + (at - low) * (at + low) / (2.f * low + 1.f) * (albedo_[i + 1] - albedo_[i]);
+  const GlossPlace place = glossAlbedoPlace(cosine);
+  const auto i = static_cast<std::size_t>(place.node);
+  return between(albedo_[i], albedo_[i + 1], place.part);
 }
 
 float LeafGloss::density(const glm::vec3& to_eye, const glm::vec3& to_light) const {

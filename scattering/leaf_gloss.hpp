@@ -32,8 +32,6 @@ class LeafGloss {
   float density(const glm::vec3& to_eye, const glm::vec3& to_light) const;
 
  private:
-  static constexpr int kIntervals = 64;
-
   // Beckmann's density of facets by the half-way vector [1/sr].
   float facets(const glm::vec3& half_way) const;
   // Area of the facets that are visible along a direction, per area of the leaf [1]: mu / G1.
@@ -41,7 +39,7 @@ class LeafGloss {
   double integratedAlbedo(double cosine) const;
 
   float roughness_;
-  std::array<float, kIntervals + 1> albedo_{};  // at the squares of 0, 1 / 64 .. 1: close at grazing angles
+  std::array<float, 65> albedo_{};  // the nodes of glossAlbedoPlace()
   float mean_albedo_ = 0.f;
 };
 

@@ -218,8 +218,8 @@ TEST(R3_TreePicture, OfALeafInShadow) {
   for (const bool as_stand : {false, true}) {
     const Scene scene = as_stand ? trees : two.scene();
     const gl::LightMap& map = as_stand ? one.map : two.map;
-    const Compensation cells{
-        .cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)}, .values = {scene.stand.trees.size(), quarter}};
+    const Compensation cells{.cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)},
+                             .values = {scene.stand.trees.size(), quarter}};
     expectRadiance(picture(scene, map, camera, Model::ss), 2, 2, glm::vec3(0.f), 0.f);
     for (const float compensation : {1.f, 0.25f}) {
       const Image image = picture(scene, map, camera, compensation == 1.f ? Model::spp : Model::sppg, cells);
@@ -252,8 +252,8 @@ TEST(R3_TreePicture, ReadsTheCellsOfEachTree) {
   Scene scene = two.scene();
   scene.stand.trees.push_back({.position = {10.f, 0.f, 0.f}});
   const std::vector<float> none(8, 0.f), all(8, 1.f);
-  const Compensation cells{
-        .cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)}, .values = {none, all}};
+  const Compensation cells{.cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)},
+                           .values = {none, all}};
   Camera camera = cameraFrom(-90.f);
   expectRadiance(picture(scene, two.map, camera, Model::sppg, cells), 2, 2, glm::vec3(0.f), 0.f);
   camera.target.x = 10.f;
@@ -322,8 +322,8 @@ TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
 
   // G is 1/2 at the height of the leaf, which sends the light down, and 0 at the ground's.
   const std::vector<float> half_above{0.f, 0.f, 0.f, 0.f, 0.5f, 0.5f, 0.5f, 0.5f};
-  const Compensation cells{
-        .cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)}, .values = {half_above}};
+  const Compensation cells{.cells = {.low = glm::vec3(-1.f), .cell_size = 1.f, .size = glm::ivec3(2)},
+                           .values = {half_above}};
   const Image sppg = picture(scene, tree.map, camera, Model::sppg, cells);
   expectRadiance(sppg, shadow.x, shadow.y, 0.5f * scene.ground_albedo * passed / kPi, kShading);
 

@@ -41,10 +41,12 @@ struct Woods {
     scene.kinds[1].leaf = {LeafOptics{0.1f, 0.1f}, LeafOptics{0.4f, 0.3f}, LeafOptics{0.2f, 0.1f}};
     scene.stand.trees.clear();
     for (std::size_t i = 0; i < trees; ++i)
-      scene.stand.trees.push_back({.position = {3.2f * static_cast<float>(i % 3), 3.4f * static_cast<float>(i / 3), 0.f},
-                                   .kind = static_cast<std::uint32_t>(i % 2)});
+      scene.stand.trees.push_back(
+          {.position = {3.2f * static_cast<float>(i % 3), 3.4f * static_cast<float>(i / 3), 0.f},
+           .kind = static_cast<std::uint32_t>(i % 2)});
     scene.ground_albedo = glm::vec3(0.2f, 0.15f, 0.1f);
-    scene.suns = {{.zenith = 0.5f, .azimuth = 0.3f}, {.zenith = 0.9f, .azimuth = 3.f, .irradiance = {0.2f, 0.3f, 0.4f}}};
+    scene.suns = {{.zenith = 0.5f, .azimuth = 0.3f},
+                  {.zenith = 0.9f, .azimuth = 3.f, .irradiance = {0.2f, 0.3f, 0.4f}}};
     scene.sky.kind = SceneSky::Kind::uniform;
     scene.sky.irradiance = glm::dvec3(0.1, 0.2, 0.3);
   }
@@ -96,7 +98,7 @@ float value(const Image& image, int x, int y, const std::string& name) {
 TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
   Woods woods;
   Drawing drawing(woods.stand());
-  for (const Model model : kModels) {
+  for (const Model model : {Model::ss, Model::spp, Model::sppg, Model::sppr, Model::nstreamg}) {
     const Image image = drawing.picture(woods.camera(), {.model = model, .samples = 2, .layers = kAll});
     std::set<float> trees, kinds;
     for (int y = 0; y < image.height; ++y)
@@ -105,7 +107,8 @@ TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
         kinds.insert(value(image, x, y, "id.kind"));
         for (const std::string band : {"R", "G", "B"}) {
           float sum = 0.f;
-          for (const std::string part : {"direct.", "single.", "multiple.", "sky."}) sum += value(image, x, y, part + band);
+          for (const std::string part : {"direct.", "single.", "multiple.", "sky."})
+            sum += value(image, x, y, part + band);
           ASSERT_NEAR(value(image, x, y, band), sum, 1e-6f);
         }
       }
@@ -135,7 +138,8 @@ TEST(R24_StandRenderer, KnowsWhereEachPixelLies) {
         const glm::vec3 a = mesh.vertices[t.x] + placement.position, b = mesh.vertices[t.y] + placement.position,
                         c = mesh.vertices[t.z] + placement.position;
         const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
-        const glm::vec3 told(value(image, x, y, "normal.X"), value(image, x, y, "normal.Y"), value(image, x, y, "normal.Z"));
+        const glm::vec3 told(value(image, x, y, "normal.X"), value(image, x, y, "normal.Y"),
+                             value(image, x, y, "normal.Z"));
         EXPECT_NEAR(std::abs(glm::dot(normal, told)), 1.f, 1e-5f);
         const Sight look = sightThrough(camera, {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
         EXPECT_LT(glm::dot(told, look.along), 0.f);
@@ -182,7 +186,8 @@ TEST(R24_StandRenderer, LeavesOutWhatIsNotSeen) {
 }
 
 // (R25) Check that with fewer and larger leaves the mean radiance and coverage stay within a few parts in a hundred,
-// which is what a random part of some hundred leaves spreads, that the leaves shown are the tree's, and the work is less.
+// which is what a random part of some hundred leaves spreads, that the leaves shown are the tree's, and the work is
+// less.
 TEST(R25_StandRenderer, KeepsTheMeanWithFewerLeaves) {
   Woods woods;
   Drawing drawing(woods.stand());
@@ -195,7 +200,8 @@ TEST(R25_StandRenderer, KeepsTheMeanWithFewerLeaves) {
   woods.scene.ground_albedo = glm::vec3(0.f);
   drawing.renderer.update(woods.stand());
   const Camera camera = woods.camera(64);
-  const Image full = drawing.picture(camera, {.samples = 16}), few = drawing.picture(camera, {.samples = 16, .piece_pixels = 4.f});
+  const Image full = drawing.picture(camera, {.samples = 16}),
+              few = drawing.picture(camera, {.samples = 16, .piece_pixels = 4.f});
   EXPECT_NEAR(mean(few, "A") / mean(full, "A"), 1., 0.06);
   EXPECT_NEAR(mean(few, "G") / mean(full, "G"), 1., 0.06);
   gl::FrameTarget target({64, 64});
@@ -220,7 +226,8 @@ TEST(R24_StandRenderer, TilesArePartsOfThePicture) {
   int differ = 0;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 1200; ++x)
-      differ += std::abs(values[4 * static_cast<std::size_t>((39 - y) * 1200 + x) + 1] - tiled.values[tiled.at(x, y, 1)]) > kShading;
+      differ += std::abs(values[4 * static_cast<std::size_t>((39 - y) * 1200 + x) + 1] -
+                         tiled.values[tiled.at(x, y, 1)]) > kShading;
   EXPECT_LE(differ, 48);
 }
 
@@ -277,7 +284,11 @@ TEST(R24_StandRenderer, DrawsWhatIsHardlyThere) {
 TEST(R24_StandRenderer, TellsWhatIsUnderTheCursor) {
   Woods woods(4);
   Drawing drawing(woods.stand());
-  Camera camera{.target = woods.scene.stand.trees[3].position, .elevation = 0.5f * kPi, .half_width = 12.f, .width = 65, .height = 65};
+  Camera camera{.target = woods.scene.stand.trees[3].position,
+                .elevation = 0.5f * kPi,
+                .half_width = 12.f,
+                .width = 65,
+                .height = 65};
   gl::FrameTarget target({65, 65});
   const gl::View view{.camera = camera};
   drawing.renderer.draw(view, target);

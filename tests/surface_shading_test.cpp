@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/buffer.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/program.hpp"
@@ -117,13 +118,20 @@ std::vector<TreeKind> twoKinds() {
   kinds[1].leaf = {LeafOptics{.reflectance = 0.7f, .transmittance = 0.3f},
                    LeafOptics{.reflectance = 0.f, .transmittance = 1.f},
                    LeafOptics{.reflectance = 0.4f, .transmittance = 0.f}};
+  for (LeafOptics& leaf : kinds[1].leaf) {
+    leaf.gloss = 0.5f * leaf.albedo();
+    leaf.gloss_roughness = 0.2f;
+  }
   kinds[1].wood_reflectance = glm::vec3(0.5f, 0.2f, 1.f);
   return kinds;
 }
 ShadingData twoKindsTwoSuns(Model model) {
-  const std::array lights{StandLight{.along = sunlight(0.5f, 1.f), .irradiance = {1.f, 0.8f, 0.3f}},
-                          StandLight{.along = sunlight(1.4f, 3.f), .irradiance = {0.1f, 2.f, 0.f}}};
-  return shadingData(model, twoKinds(), lights);
+  const std::array lights{
+      ShadingLight{.travel = vec4(sunlight(0.5f, 1.f), 0.f), .irradiance = vec4(1.f, 0.8f, 0.3f, 0.f)},
+      ShadingLight{.travel = vec4(sunlight(1.4f, 3.f), 0.f), .irradiance = vec4(0.1f, 2.f, 0.f, 0.f)}};
+  ShadingData data;
+  update(data, model, twoKinds(), lights, exactPowerTable);
+  return data;
 }
 
 // 8,192 fragments at random and in corners: no foliage, foliage without end, G of 0 and 1, surfaces along the light.

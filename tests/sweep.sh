@@ -121,7 +121,7 @@ wrong "wrong.toml:3: sun.zenith_deg = []" 'scenes = "slab"\n[sun]\nzenith_deg = 
 wrong "wrong.toml:3: sun.zenith_deg = nan" 'scenes = "slab"\n[sun]\nzenith_deg = nan\n'
 wrong "wrong.toml:1: scenes = []" 'scenes = []\n'
 wrong "there once" 'scenes = ["slab", "slab"]\n'
-wrong "must be of mc, ss, spp, sppg" 'scenes = "slab"\nmodels = "pp"\n'
+wrong "must be of mc, ss, spp, sppg" 'scenes = "slab"\nmodels = "exact"\n'
 wrong "one alone of albedo" 'scenes = "slab"\n[leaf]\nalbedo = 1\nband = 1\n'
 wrong "both reflectance and transmittance" 'scenes = "slab"\n[leaf]\nreflectance = 1\n'
 wrong "taken in pairs" 'scenes = "slab"\n[leaf]\nreflectance = [0.1, 0.2]\ntransmittance = 0.1\n'

@@ -72,8 +72,8 @@ TEST(R25_TreeLevels, NumberTrianglesByTheirLastVertex) {
             EXPECT_EQ(glm::clamp(at, cluster.box.low, cluster.box.high), at);
           }
           if (number >= leaf_triangles + mesh.wood_triangles.size()) continue;
-          const glm::uvec3 own = number < leaf_triangles ? mesh.leaf_triangles[number]
-                                                         : mesh.wood_triangles[number - leaf_triangles];
+          const glm::uvec3 own =
+              number < leaf_triangles ? mesh.leaf_triangles[number] : mesh.wood_triangles[number - leaf_triangles];
           std::set<float> x, expected;
           for (int corner = 0; corner < 3; ++corner) {
             x.insert(levels.vertices[levels.indices[i + static_cast<std::uint32_t>(corner)]].x);

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/require.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_writer.hpp"
@@ -38,7 +39,7 @@ Viewer::Viewer(const ViewerOptions& options)
       context_(contextFor(options)),
       gui_(window_->scale()),
       session_(options.name, options.read),
-      renderer_(*context_),
+      renderer_(*context_, exactPowerTable),
       tracing_(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)) {
   session_.look = options.look;
   renderer_.timePasses(true);
@@ -234,7 +235,8 @@ void Viewer::saveWindow(const std::filesystem::path& file) const {
 void Viewer::saveExr(const std::filesystem::path& file) {
   if (file.extension() != ".exr") throw InvalidInput(file.string() + ": must end in .exr");
   requirePictureName(file);
-  gl::PictureEffort effort{.model = session_.document().model, .samples = session_.look.samples, .layers = {}};
+  gl::PictureEffort effort{
+      .model = session_.document().model, .samples = session_.look.samples, .layers = {}, .exact = exactPowerTable};
   for (int layer = 1; layer < gl::kLayers; ++layer) effort.layers.push_back(static_cast<gl::Layer>(layer));
   writeImage(file, gl::standPicture(*context_, renderer_, session_.camera, effort), 1.f);
 }

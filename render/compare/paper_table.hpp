@@ -21,8 +21,10 @@ inline std::optional<double> paperError(const Validation& v, Model model) {
       return periodic ? 0.43 : 0.65;
     case Model::sppg:
       return periodic ? 0.092 : 0.062;
+    case Model::sppr:
     case Model::nstreamg:
-      break;  // later than the paper
+    case Model::pp:
+      break;  // not in the table
   }
   return std::nullopt;
 }

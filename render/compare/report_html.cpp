@@ -28,8 +28,12 @@ std::string colourOf(Model model) {  // Okabe & Ito's palette, safe for the colo
       return "#D55E00";
     case Model::sppg:
       return "#009E73";
+    case Model::sppr:
+      return "#E69F00";
     case Model::nstreamg:
       return "#CC79A7";
+    case Model::pp:
+      return "#56B4E9";
   }
   return "#000000";
 }

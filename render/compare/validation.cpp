@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/require.hpp"
+#include "render/compare/exact_powers.hpp"
 
 namespace sunfleck {
 namespace {
@@ -133,11 +134,11 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
     ModelResult& of_model = result.models.emplace_back();
     of_model.model = model;
     const auto start = std::chrono::steady_clock::now();
-    of_model.irradiance = leafIrradiance(model, geometry, result.optics());
+    of_model.irradiance = leafIrradiance(model, geometry, result.optics(), exactPowerTable);
     of_model.shade_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     of_model.prepare_seconds =
         stand.lightSeconds() + geometry.depth_seconds +
-        (model == Model::sppg ? stand.compensationSeconds() + geometry.compensation_seconds : 0.);
+        (needsCompensation(model) ? stand.compensationSeconds() + geometry.compensation_seconds : 0.);
     of_model.errors = modelErrors(of_model.irradiance, result.reference.leaf_irradiance, result.categories);
   }
   return result;

@@ -55,7 +55,7 @@ TraceLight traceLight(const Scene& scene, int band);  // the same in one
 std::vector<std::vector<TraceLight>> traceLightsOfSuns(const Scene& scene, const std::vector<int>& bands);
 
 std::string kindOf(const Scene& scene);  // "single tree", "16 trees" or "periodic"
-std::string labelOf(Model model);        // "SS", "SPP", "SPPG"
+std::string labelOf(Model model);        // "SS", "SPP", ... "NSTREAMG"
 
 // Throws InvalidInput on a scene that cannot be validated: requireModelled(), or a ground that reflects in this band,
 // of which the models know nothing.

@@ -30,6 +30,12 @@ Buffer::Buffer(std::size_t bytes) : name_(created()), bytes_(bytes) {
                        GL_DYNAMIC_STORAGE_BIT);
 }
 
+Buffer Buffer::filled(std::size_t words, std::uint32_t word) {
+  Buffer buffer(words * sizeof word);
+  glClearNamedBufferData(buffer.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+  return buffer;
+}
+
 Buffer Buffer::writable(std::size_t bytes) {
   return Buffer(bytes);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 namespace sunfleck::gl {
 
-// Memory of the current context, filled once from the program's, or by and by.
+// Memory of the current context, filled once from the program's, by and by, or by shaders.
 class Buffer {
  public:
   // Values of a plain type, laid out as the shaders read them. An empty span becomes a few zero bytes, since OpenGL
@@ -21,6 +22,8 @@ class Buffer {
   // Room that is filled by and by.
   static Buffer writable(std::size_t bytes);
   void write(std::size_t first_byte, std::span<const std::byte> content);
+  // So many words of 4 bytes, all the same, for shaders to write.
+  static Buffer filled(std::size_t words, std::uint32_t word);
 
   static std::size_t largestStorage();  // that shaders of the current context may read [byte]
   // Binds it for all shaders. Throws std::runtime_error when it is larger than the driver lets a shader read.
@@ -28,12 +31,18 @@ class Buffer {
   void bindUniform(unsigned binding) const;
   unsigned name() const { return name_.get(); }
 
+  std::size_t bytes() const { return bytes_; }
+
   // The content again.
   template <typename T>
   std::vector<T> read() const {
     std::vector<T> values(bytes_ / sizeof(T));
-    readInto(std::as_writable_bytes(std::span<T>(values)));
+    read(std::span<T>(values));
     return values;
+  }
+  template <typename T>
+  void read(std::span<T> values) const {
+    readInto(std::as_writable_bytes(values));
   }
 
  private:

@@ -64,6 +64,12 @@ void BufferTexture::writeBytes(std::size_t first_texel, std::span<const std::byt
   buffer_->write(first_texel * texel_bytes_, bytes);
 }
 
+void BufferTexture::copy(std::size_t first_texel, const Buffer& from) {
+  if (from.bytes() == 0) return;
+  glCopyNamedBufferSubData(from.name(), buffer_->name(), 0, static_cast<GLintptr>(first_texel * texel_bytes_),
+                           static_cast<GLsizeiptr>(from.bytes()));
+}
+
 void BufferTexture::bind(unsigned unit) const {
   glBindTextureUnit(unit, name_.get());
 }

@@ -30,6 +30,7 @@ class BufferTexture {
   void write(std::size_t first_texel, std::span<const T> values) {
     writeBytes(first_texel, std::as_bytes(values));
   }
+  void copy(std::size_t first_texel, const Buffer& from);
   // New content and no more.
   template <typename T>
   void assign(std::span<const T> values) {

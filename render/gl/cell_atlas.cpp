@@ -45,20 +45,21 @@ std::size_t CellAtlas::update(const DrawnStand& stand) {
     if (!told(drawn)) continue;
     now[tree].block = count++;
     for (std::size_t light = 0; light < kMostLights; ++light)
-      now[tree].compensation[light] =
-          drawn.compensation[light].values.empty() ? 0 : drawn.compensation[light].revision;
+      now[tree].compensation[light] = drawn.compensation[light].values.empty() ? 0 : drawn.compensation[light].revision;
     now[tree].sky_light = drawn.sky_light.values.empty() ? 0 : drawn.sky_light.revision;
     now[tree].source = drawn.compensation[0].values.data();
   }
   glm::ivec3 block_size(1);
   for (const DrawnKind& kind : stand.kinds) block_size = glm::max(block_size, kind.cells.size);
   const bool with_sky = skyTold(stand);
+  const int channels = stand.lights.size() > 1 ? 4 : 1;  // fewer are read faster
   const auto room = static_cast<std::uint32_t>(blocks_.x * blocks_.y * blocks_.z);
-  if (!compensation_ || block_size != block_size_ || count > room || (with_sky && sky_->size() == glm::ivec3(1))) {
+  if (!compensation_ || channels != compensation_->channels() || block_size != block_size_ || count > room ||
+      (with_sky && sky_->size() == glm::ivec3(1))) {
     block_size_ = block_size;
     blocks_ = blocksFor(std::max<std::size_t>(count, 1), block_size);
-    compensation_.emplace(block_size_ * blocks_);
-    sky_.emplace(with_sky ? block_size_ * blocks_ : glm::ivec3(1));
+    compensation_.emplace(block_size_ * blocks_, channels);
+    sky_.emplace(with_sky ? block_size_ * blocks_ : glm::ivec3(1), 4);
     trees_.clear();
   }
   trees_.resize(now.size());
@@ -76,18 +77,22 @@ std::size_t CellAtlas::send(const DrawnStand& stand, std::size_t tree, const Hel
   const glm::ivec3 corner =
       block_size_ * glm::ivec3(block % blocks_.x, block / blocks_.x % blocks_.y, block / (blocks_.x * blocks_.y));
   const auto cells = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y * size.z);
-  std::vector<glm::vec4> values(cells, glm::vec4(1.f));
-  for (std::size_t light = 0; light < kMostLights; ++light) {
+  const auto channels = static_cast<std::size_t>(compensation_->channels());
+  std::vector<float> values(channels * cells, 1.f);
+  for (std::size_t light = 0; light < channels; ++light) {
     const std::span<const float> of_light = drawn.compensation[light].values;
     for (std::size_t cell = 0; cell < std::min(cells, of_light.size()); ++cell)
-      values[cell][static_cast<int>(light)] = of_light[cell];
+      values[channels * cell + light] = of_light[cell];
   }
   compensation_->write(corner, size, values);
-  if (drawn.sky_light.values.empty()) return values.size() * sizeof values[0];
-  for (std::size_t cell = 0; cell < std::min(cells, drawn.sky_light.values.size()); ++cell)
-    values[cell] = glm::vec4(drawn.sky_light.values[cell], 0.f);
+  std::size_t sent = values.size() * sizeof values[0];
+  const std::span<const glm::vec3> sky = drawn.sky_light.values;
+  if (sky.empty()) return sent;
+  values.assign(4 * cells, 0.f);
+  for (std::size_t cell = 0; cell < std::min(cells, sky.size()); ++cell)
+    for (std::size_t band = 0; band < 3; ++band) values[4 * cell + band] = sky[cell][static_cast<int>(band)];
   sky_->write(corner, size, values);
-  return 2 * values.size() * sizeof values[0];
+  return sent + values.size() * sizeof values[0];
 }
 
 void CellAtlas::bind(unsigned compensation, unsigned sky) const {

@@ -144,6 +144,16 @@ std::string Context::renderer() const {
   return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
 }
 
+bool Context::drawsInSoftware() const {
+  const std::string name = renderer();
+  constexpr std::array<std::string_view, 4> known{"llvmpipe", "softpipe", "SWR", "SwiftShader"};
+  return std::ranges::any_of(known, [&](std::string_view of) { return name.find(of) != std::string::npos; });
+}
+
+void Context::finish() const {
+  glFinish();
+}
+
 void Context::requireNoError(const std::string& work) const {
   std::string error = std::exchange(state_->first_error, {});
   const GLenum code = glGetError();

@@ -18,6 +18,8 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   std::string renderer() const;  // what draws, as the driver names it
+  bool drawsInSoftware() const;  // on the processor
+  void finish() const;           // returns when all that was asked for is done
   // Warnings of the driver and what it calls worth knowing, since this was made; notifications are not counted.
   std::size_t messages() const;
   // Throws std::runtime_error with the first error the driver has reported since the last call, if any.

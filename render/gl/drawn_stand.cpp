@@ -4,7 +4,17 @@
 
 namespace sunfleck::gl {
 
-DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry) {
+std::vector<glm::vec3> copies(const DrawnStand& stand, glm::ivec2 around) {
+  std::vector<glm::vec3> shifts{glm::vec3(0.f)};
+  if (!stand.period) return shifts;
+  for (int y = -around.y; y <= around.y; ++y)
+    for (int x = -around.x; x <= around.x; ++x)
+      if (x != 0 || y != 0)
+        shifts.push_back({static_cast<float>(x) * stand.period->x, static_cast<float>(y) * stand.period->y, 0.f});
+  return shifts;
+}
+
+DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry, const OpacityMapStore* made) {
   DrawnStand stand;
   for (const StandLight& light : geometry.lights())
     stand.lights.push_back({.along = light.along, .irradiance = light.irradiance});
@@ -16,8 +26,10 @@ DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry) {
     if (!of_stand.stands) continue;
     const CellGrid& cells = geometry.cells(kind);
     drawn.cells = {.low = cells.low, .cell_size = cells.cell_size, .size = cells.size};
-    for (std::size_t light = 0; light < stand.lights.size(); ++light)
+    for (std::size_t light = 0; light < stand.lights.size(); ++light) {
       drawn.maps.push_back(lightMap(geometry.light(kind, light), geometry.lightRevision(kind, light)));
+      if (made) drawn.maps.back().made = made->find(of_stand.mesh, stand.lights[light].along);
+    }
   }
   for (std::size_t tree = 0; tree < scene.stand.trees.size(); ++tree) {
     DrawnTree& drawn = stand.trees.emplace_back();
@@ -34,6 +46,7 @@ DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry) {
         stand.periods_around = glm::max(stand.periods_around, periodsAround(scene.stand, leafBounds(*kind.mesh)));
   stand.ground_albedo = scene.ground_albedo;
   stand.sky = geometry.sky();
+  stand.ground_sky = geometry.groundSky();
   return stand;
 }
 

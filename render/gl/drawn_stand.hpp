@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/gl/light_map.hpp"
+#include "render/gl/opacity_map_store.hpp"
 #include "render/scene.hpp"
 #include "render/stand_geometry.hpp"
 #include "sky/sky_map.hpp"
@@ -59,9 +60,17 @@ struct DrawnStand {
   glm::ivec2 periods_around{0};     // in which copies may stand in the light
   glm::vec3 ground_albedo{0.f};     // per band [1]; 0 in all: there is none
   std::shared_ptr<const SkyMap> sky;
+  GroundSky ground_sky;  // what the ground receives of it
 };
 
+// Displacements of a stand's copies so many periods around, the stand itself first [m]. Where the stand is not periodic
+// there are no others.
+std::vector<glm::vec3> copies(const DrawnStand& stand, glm::ivec2 around);
+// Tree i of copy c of so many periods around is drawn tree c * trees + i.
+inline constexpr int kDrawnAround = 1;
+
 // `geometry` is up to date for the scene. G and sky light are told of the trees for which it has them.
-DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry);
+//   made  from where maps are taken that the graphics card made
+DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry, const OpacityMapStore* made = nullptr);
 
 }  // namespace sunfleck::gl

@@ -1,6 +1,6 @@
-// What stands between a place and a light, and behind the place, read from the kinds' deep opacity maps along the light,
-// once for each tree that may stand there.
-layout(binding = 0) uniform usamplerBuffer map_lines;      // first crossing, end of the crossings, bits of the wood's depth
+// What stands between a place and a light, and behind the place, read from the kinds' deep opacity maps along the
+// light, once for each tree that may stand there.
+layout(binding = 0) uniform usamplerBuffer map_lines;      // first crossing, end of them, bits of the wood's depth
 layout(binding = 1) uniform usamplerBuffer map_crossings;  // bits of the depth from the map's origin plane [m], leaf
 layout(binding = 2) uniform usamplerBuffer light_cells;    // first entry of each cell of the lights' grids
 layout(binding = 3) uniform usamplerBuffer light_casters;  // bits of a tree's position [m], the tree
@@ -48,7 +48,8 @@ Foliage foliageOfTree(MapFrame map, vec3 at, uint own, float wood_bias) {
   for (int corner = 0; corner < 4; ++corner) {
     ivec2 offset = ivec2(corner & 1, corner >> 1);
     ivec2 pixel = near.pixel + offset;
-    float weight = (offset.x == 1 ? near.part.x : 1.0 - near.part.x) * (offset.y == 1 ? near.part.y : 1.0 - near.part.y);
+    float weight =
+        (offset.x == 1 ? near.part.x : 1.0 - near.part.x) * (offset.y == 1 ? near.part.y : 1.0 - near.part.y);
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(map.size.xy)))) {
       sum.visible += weight;
       continue;

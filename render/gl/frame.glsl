@@ -10,13 +10,15 @@ layout(std140, binding = 0) uniform Frame {
   vec4 eye;           // xyz: the eye, or for parallel lines of sight the middle of the picture [m]; w: 1 in perspective
   vec4 sight;         // xyz: direction of sight of the middle
   vec4 corner;        // xyz: from `eye` to where the picture's lower left corner is seen; zw of right: see there [m]
-  vec4 pixel_right;   // xyz: one pixel to the right [m]; w: place of the target's corner in the picture, from the left [pixel]
+  vec4 pixel_right;   // xyz: one pixel to the right [m]; w: the target's corner in the picture, from the left [pixel]
   vec4 pixel_up;      // xyz: one pixel up; w: the same from below
   vec4 ground;        // xyz: centre of the ground's disc; w: its radius                    [m]
   vec4 ground_albedo; // rgb: per band; w: 1 where the ground is drawn
   vec4 period;        // xy: side lengths, 0: none; zw: where the period begins              [m]
   vec4 sky_azimuth;   // x: where the sky's first column begins [rad]
-  uvec4 counts;       // x: lights; y: trees of the stand; z: light whose foliage is told in layers
+  vec4 ground_cells;  // xy: corner of the cells in which the ground's skylight is told [m]; zw: 1 / extent [1/m]
+  vec4 ground_open;   // rgb: irradiance of open ground by the sky [1]; w: 1 where cells are told
+  uvec4 counts;       // x: lights; y: trees of the stand; z: light whose foliage is told in layers; w: 1 where cells have light
   uvec4 cells;        // xyz: cells of a block, one for each tree; w: blocks along x
   uvec4 blocks;       // x: blocks along y; y, z: rows and columns of the sky, 0: none
   LightFrame light_frames[4];

@@ -19,7 +19,8 @@ enum class Layer {
   single,    // of sunlight scattered twice, by models that tell
   multiple,  // of other sunlight
   sky,       // of the sky's light, scattered or seen behind all
-  geometry,  // normal towards the eye, and distance from the eye or the target's plane along the middle line of sight [m]
+  geometry,  // normal towards the eye, and distance from the eye or the target's plane along the middle line of sight
+             // [m]
   foliage,   // n+, n-, visible share of the light, G (see View::layer_light)
   ids,       // drawn tree or kGround or kNone, its triangle, its kind, its leaf; bits of whole numbers
 };

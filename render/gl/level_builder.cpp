@@ -70,7 +70,8 @@ void LevelBuilder::add(std::vector<Level>& into, const std::vector<LevelTriangle
   std::vector<std::uint32_t> order(count), code(count);
   std::iota(order.begin(), order.end(), 0u);
   for (std::uint32_t i = 0; i < count; ++i) code[i] = mortonCode(box, triangles[i].corners[0]);
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) { return code[a] != code[b] ? code[a] < code[b] : a < b; });
+  std::ranges::sort(order,
+                    [&](std::uint32_t a, std::uint32_t b) { return code[a] != code[b] ? code[a] < code[b] : a < b; });
   Level& level = into.emplace_back();
   level.piece_area = piece_area;
   for (std::size_t i = 0; i < count; ++i) {
@@ -78,7 +79,8 @@ void LevelBuilder::add(std::vector<Level>& into, const std::vector<LevelTriangle
       level.clusters.push_back({.first_index = static_cast<std::uint32_t>(levels_.indices.size()), .box = {}});
     const LevelTriangle& triangle = triangles[order[i]];
     const std::size_t last = own[order[i]];
-    for (const std::size_t corner : {(last + 1) % 3, (last + 2) % 3}) levels_.indices.push_back(vertexAt(triangle, corner));
+    for (const std::size_t corner : {(last + 1) % 3, (last + 2) % 3})
+      levels_.indices.push_back(vertexAt(triangle, corner));
     levels_.indices.push_back(first + order[i]);
     for (const glm::vec3& corner : triangle.corners) level.clusters.back().box.include(corner);
     level.clusters.back().end_index = static_cast<std::uint32_t>(levels_.indices.size());

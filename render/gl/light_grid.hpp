@@ -25,9 +25,9 @@ struct LightBox {
 // (R4) Which trees may stand in the light of a place: those whose maps the line along the light through the place may
 // meet. The plane across the light is divided into square cells that list them.
 struct LightGrid {
-  glm::vec2 low{0.f};     // corner of cell (0, 0) [m]
-  float cell_size = 1.f;  // [m]
-  glm::ivec2 size{1};     // [cell]
+  glm::vec2 low{0.f};                      // corner of cell (0, 0) [m]
+  float cell_size = 1.f;                   // [m]
+  glm::ivec2 size{1};                      // [cell]
   std::vector<std::uint32_t> first{0, 0};  // those of cell i are casters[first[i]] .. casters[first[i + 1] - 1]
   std::vector<std::uint32_t> casters;      // numbers, ascending in each cell
 };

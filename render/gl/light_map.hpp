@@ -8,6 +8,7 @@
 
 #include "core/directions.hpp"
 #include "grid/deep_opacity_map.hpp"
+#include "render/gl/opacity_maps.hpp"
 
 namespace sunfleck::gl {
 
@@ -22,6 +23,7 @@ struct LightMap {
   std::span<const Crossing> crossings;   // sorted by depth within a pixel
   std::span<const float> wood_depth;     // per pixel; infinity where there is no wood [m]
   std::uint64_t revision = 1;            // another whenever the content is another
+  const OpacityMap* made = nullptr;      // the same on the graphics card, if it made the map
 };
 LightMap lightMap(const DeepOpacityMap& map, std::uint64_t revision = 1);
 

@@ -46,13 +46,18 @@ void MapPool::makeRoom(const DrawnStand& stand) {
 }
 
 std::size_t MapPool::send(const LightMap& map, Held& held) {
+  held.revision = map.revision;
+  if (map.made) {
+    lines_.copy(held.first_line, map.made->lines);
+    crossings_.copy(held.first_crossing, map.made->crossings);
+    return 0;
+  }
   std::vector<detail::MapLine> lines;
   lines.reserve(map.wood_depth.size());
   for (std::size_t i = 0; i < map.wood_depth.size(); ++i)
     lines.push_back({.first = map.first[i], .end = map.first[i + 1], .wood_depth = map.wood_depth[i]});
   lines_.write(held.first_line, std::span<const detail::MapLine>(lines));
   crossings_.write(held.first_crossing, map.crossings);
-  held.revision = map.revision;
   held.source = map.crossings.data();
   return lines.size() * sizeof lines[0] + map.crossings.size_bytes();
 }

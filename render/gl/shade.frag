@@ -10,6 +10,7 @@
 layout(binding = 6) uniform usampler2D visible;
 layout(binding = 7) uniform usamplerBuffer triangles;  // two texels of bits for each: see tree_levels.hpp
 layout(binding = 8) uniform sampler2D sky_radiance;   // rows from the zenith down [1/sr]
+layout(binding = 9) uniform sampler2D ground_sky;     // irradiance of the ground by the sky, per band [1]
 
 layout(location = 0) out vec4 total;  // rgb: radiance; a: coverage by trees and ground
 #ifdef LAYERS
@@ -45,6 +46,11 @@ void addLight(Shaded shaded, uint light, Foliage foliage, float compensation) {
 #endif
 }
 
+void addSky(Surface surface, vec3 radiance) {
+  Shaded shaded = shadeBySky(surface, radiance);
+  sky_sum = shaded.direct + shaded.single + shaded.multiple;
+}
+
 void shadeTree(uvec2 id, Sight look) {
   vec3 stands_here = drawn[id.x].position;
   uint tree = id.x % counts.y;
@@ -65,7 +71,8 @@ void shadeTree(uvec2 id, Sight look) {
   float error = of_piece.w == kNoLeaf ? middle.x : 0.0;
   // The light is that of the true leaf or twig, however enlarged it is drawn.
   vec3 lit = of_piece.w == kNoLeaf ? place : middle + (place - middle) / enlargement;
-  Surface surface = wood ? woodSurface(kind, tree, normal, -look.along) : leafSurface(kind, tree, leaf, normal, -look.along);
+  Surface surface = wood ? woodSurface(kind, tree, normal, -look.along)
+                         : leafSurface(kind, tree, leaf, normal, -look.along);
   for (uint light = 0u; light < LIGHTS; ++light) {
     float bias = woodBias(wood ? dot(normal, light_frames[light].travel.xyz) : 1.0);
     Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, vec2(bias, error));
@@ -74,10 +81,7 @@ void shadeTree(uvec2 id, Sight look) {
     float compensation = NEEDS_COMPENSATION ? compensationAt(lit, tree, light) : 1.0;
     addLight(shadeByLight(surface, foliage, thickness, compensation, light), light, foliage, compensation);
   }
-  if (blocks.y > 0u) {
-    Shaded shaded = shadeBySky(surface, skyLightAt(lit, tree));
-    sky_sum = shaded.direct + shaded.single + shaded.multiple;
-  }
+  if (counts.w > 0u) addSky(surface, skyLightAt(lit, tree));
 #ifdef LAYERS
   geometry = vec4(normal, dot(away * look.along, sight.xyz));
   ids = uvec4(id, kind, leaf);
@@ -110,6 +114,15 @@ LastLeaf lastLeaf(uint light, vec3 here) {
   return last;
 }
 
+const float kPi = 3.14159265;
+
+// (D12) What a place of the ground receives of the sky: beyond the cells it lies open.
+vec3 skyOnGround(vec2 here) {
+  vec2 at = (here - ground_cells.xy) * ground_cells.zw;
+  bool told = ground_open.w > 0.0 && all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
+  return told ? textureLod(ground_sky, at, 0.0).rgb : ground_open.rgb;
+}
+
 // (R3) The ground: a Lambertian disc that fades towards its rim. Gives its coverage.
 float shadeGround(Sight look) {
   if (ground_albedo.w == 0.0 || look.along.z >= 0.0) return 0.0;
@@ -129,6 +142,8 @@ float shadeGround(Sight look) {
     addLight(shadeByLight(surface, foliage, foliage.before + foliage.beyond, compensation, light), light, foliage,
              compensation);
   }
+  if (blocks.y > 0u)
+    addSky(opaqueSurface(0u, kNone, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), -look.along), skyOnGround(here.xy) / kPi);
 #ifdef LAYERS
   geometry = vec4(0.0, 0.0, 1.0, dot(away * look.along, sight.xyz));
   ids = uvec4(kGround, kNone, kNone, kNoLeaf);
@@ -136,7 +151,6 @@ float shadeGround(Sight look) {
   return 1.0 - smoothstep(0.6, 1.0, from_centre);
 }
 
-const float kPi = 3.14159265;
 vec3 skyTowards(vec3 to_sky) {
   if (blocks.y == 0u || to_sky.z <= 0.0) return vec3(0.0);
   vec2 rows_columns = vec2(blocks.yz);

@@ -3,12 +3,15 @@
 // part of the program: what changes with the model changes nothing else.
 #define STREAMS 2
 #include "spp/stream_formulas.glsl"
+#include "spp/power_table.glsl"
+#include "scattering/gloss_formulas.glsl"
 #include "render/shading/surface_types.glsl"
 
 layout(std140, binding = 1) uniform Surfaces {
   KindOptics kinds[kMostSurfaceKinds];
   ShadingLight lights[kMostShadingLights];
 };
+layout(std430, binding = 14) readonly buffer GlossTables { float gloss_tables[]; };
 #define MODEL_CONSTANTS(Type) \
   layout(std430, binding = 15) readonly buffer ModelConstants { Type model_constants[]; }
 

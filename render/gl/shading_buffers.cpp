@@ -35,10 +35,12 @@ ShadingBuffers::ShadingBuffers(const ShadingData& data)
         const SurfacesData surfaces = surfacesData(data);
         return Buffer(std::span(&surfaces, 1));
       }()),
+      gloss_(data.gloss_tables),
       constants_(data.constants) {}
 
 void ShadingBuffers::bind() const {
   surfaces_.bindUniform(1);
+  gloss_.bindStorage(14);
   constants_.bindStorage(15);
 }
 

@@ -15,11 +15,11 @@ Shader shadingShader(Stage stage, const std::string& path, Model model);
 class ShadingBuffers {
  public:
   explicit ShadingBuffers(const shading::ShadingData& data);
-  // For all shaders of the current context: uniform block 1 and storage block 15.
+  // For all shaders of the current context: uniform block 1, storage blocks 14 and 15.
   void bind() const;
 
  private:
-  Buffer surfaces_, constants_;
+  Buffer surfaces_, gloss_, constants_;
 };
 
 }  // namespace sunfleck::gl

@@ -53,7 +53,8 @@ class Joints {
     std::uint32_t found = !joints_.empty() && near(last_, at) ? last_ : kNone;
     const glm::ivec3 cell = cellOf(at);
     for (int i = 0; i < 27 && found == kNone; ++i)
-      if (const auto in_cell = cells_.find(key(cell + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1)); in_cell != cells_.end())
+      if (const auto in_cell = cells_.find(key(cell + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
+          in_cell != cells_.end())
         for (const std::uint32_t joint : in_cell->second)
           if (found == kNone && near(joint, at)) found = joint;
     if (found == kNone) {
@@ -112,8 +113,7 @@ SimpleWood simpleWood(const TreeMesh& mesh, float reach, float piece_area) {
     if (glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0])) < 1e-6f * reach * reach ||
         !taken.emplace(sorted, true).second)
       continue;
-    wood.triangles.push_back(
-        {.corners = corners, .shared = joint, .middle = glm::vec3(reach, 0.f, 0.f)});
+    wood.triangles.push_back({.corners = corners, .shared = joint, .middle = glm::vec3(reach, 0.f, 0.f)});
   }
 
   std::vector<double> areas;
@@ -127,8 +127,8 @@ SimpleWood simpleWood(const TreeMesh& mesh, float reach, float piece_area) {
     const glm::vec3 a = joints.place(ends.first), b = joints.place(ends.second), middle = 0.5f * (a + b);
     const float length = glm::distance(a, b);
     const glm::vec3 along = 0.5f * enlargement[piece] * (b - a);
-    const glm::vec3 aside = 0.5f * enlargement[piece] * static_cast<float>(areas[piece]) / length *
-                            across((b - a) / length, piece);
+    const glm::vec3 aside =
+        0.5f * enlargement[piece] * static_cast<float>(areas[piece]) / length * across((b - a) / length, piece);
     const std::array<glm::vec3, 4> corners{middle - along - aside, middle + along - aside, middle + along + aside,
                                            middle - along + aside};
     const auto first = static_cast<std::uint32_t>(wood.shared_count);

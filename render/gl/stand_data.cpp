@@ -12,22 +12,11 @@ namespace {
 
 using namespace detail;
 
-constexpr float kGroundRadii = 3.f;     // of the widest crown, from a tree's axis to the rim of the ground
-constexpr float kEmptyGround = 10.f;    // radius of the ground where nothing stands [m]
+constexpr float kGroundRadii = 3.f;   // of the widest crown, from a tree's axis to the rim of the ground
+constexpr float kEmptyGround = 10.f;  // radius of the ground where nothing stands [m]
 
 bool anyAbove(const glm::vec3& values, float bound) {
   return values.x > bound || values.y > bound || values.z > bound;
-}
-
-// Displacements of the copies that are drawn or may stand in the light, the stand itself first [m].
-std::vector<glm::vec3> copies(const DrawnStand& stand, glm::ivec2 around) {
-  std::vector<glm::vec3> shifts{glm::vec3(0.f)};
-  if (!stand.period) return shifts;
-  for (int y = -around.y; y <= around.y; ++y)
-    for (int x = -around.x; x <= around.x; ++x)
-      if (x != 0 || y != 0)
-        shifts.push_back({static_cast<float>(x) * stand.period->x, static_cast<float>(y) * stand.period->y, 0.f});
-  return shifts;
 }
 
 Bounds moved(const Bounds& box, const glm::vec3& by) {
@@ -47,7 +36,9 @@ LightBox rectangleOf(const LightMap& map, const glm::vec3& position) {
 }  // namespace
 
 StandData::StandData()
-    : triangles_(BufferTexture::Texel::rgba32ui, "the trees' triangles take"),
+    : sky_(RadianceTexture::Read::cells, "a sky"),
+      ground_sky_(RadianceTexture::Read::interpolated, "a ground"),
+      triangles_(BufferTexture::Texel::rgba32ui, "the trees' triangles take"),
       light_cells_(BufferTexture::Texel::r32ui, "the lists of trees in the light take"),
       light_casters_(BufferTexture::Texel::rgba32ui, "the lists of trees in the light take") {}
 
@@ -57,12 +48,16 @@ Sent StandData::update(const DrawnStand& stand) {
   sent.meshes = updateMeshes(stand);
   sent.maps = maps_.update(stand);
   sent.cells = cells_.update(stand);
-  sent.sky = sky_.update(stand.sky);
+  sent.sky = updateSky(stand);
   sent.trees = updateTrees(stand);
   placeGround(stand);
   sent.trees += sendGrids(stand);
 
-  frame_.counts = {static_cast<std::uint32_t>(lights_.size()), static_cast<std::uint32_t>(stand.trees.size()), 0u, 0u};
+  const bool lit_by_cells = stand.sky || std::ranges::any_of(stand.trees, [](const DrawnTree& tree) {
+                              return !tree.sky_light.values.empty();
+                            });
+  frame_.counts = {static_cast<std::uint32_t>(lights_.size()), static_cast<std::uint32_t>(stand.trees.size()), 0u,
+                   lit_by_cells ? 1u : 0u};
   frame_.cells = glm::uvec4(glm::uvec3(cells_.blockSize()), static_cast<std::uint32_t>(cells_.blocks().x));
   frame_.blocks = {static_cast<std::uint32_t>(cells_.blocks().y), 0u, 0u, 0u};
   if (stand.sky) {
@@ -84,8 +79,8 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
     kinds_[i].mesh = mesh;
     kinds_[i].levels = mesh ? treeLevels(*mesh) : TreeLevels{};
     kinds_[i].buffers.emplace(kinds_[i].levels);
-    sent += kinds_[i].levels.vertices.size() * sizeof(glm::vec3) +
-            kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
+    sent +=
+        kinds_[i].levels.vertices.size() * sizeof(glm::vec3) + kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
   }
   if (sent > 0) {
     first_triangle_.clear();
@@ -110,6 +105,29 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
   return sent;
 }
 
+std::size_t StandData::updateSky(const DrawnStand& stand) {
+  std::size_t sent = 0;
+  if (stand.sky != sent_sky_ && stand.sky) {
+    const auto cells = static_cast<std::size_t>(stand.sky->rows()) * static_cast<std::size_t>(stand.sky->columns());
+    std::vector<glm::vec3> radiance;
+    radiance.reserve(cells);
+    for (std::size_t cell = 0; cell < cells; ++cell) radiance.push_back(stand.sky->radiance(cell));
+    sky_.assign({stand.sky->columns(), stand.sky->rows()}, radiance);
+    sent += cells * sizeof radiance[0];
+  }
+  sent_sky_ = stand.sky;
+  const GroundSky& ground = stand.ground_sky;
+  if (ground.revision != sent_ground_sky_ && !ground.irradiance.empty()) {
+    ground_sky_.assign(ground.grid.size, ground.irradiance);
+    sent += ground.irradiance.size_bytes();
+  }
+  sent_ground_sky_ = ground.revision;
+  frame_.ground_cells =
+      glm::vec4(ground.grid.low, 1.f / (ground.grid.cell_size * glm::vec2(glm::max(ground.grid.size, 1))));
+  frame_.ground_open = glm::vec4(ground.open, ground.irradiance.empty() ? 0.f : 1.f);
+  return sent;
+}
+
 std::size_t StandData::updateTrees(const DrawnStand& stand) {
   std::vector<TreeData> trees;
   for (std::size_t tree = 0; tree < stand.trees.size(); ++tree)
@@ -119,7 +137,7 @@ std::size_t StandData::updateTrees(const DrawnStand& stand) {
   for (Kind& kind : kinds_) kind.drawn.clear();
   box_ = {};
   seen_.clear();
-  for (const glm::vec3& shift : copies(stand, glm::ivec2(1)))
+  for (const glm::vec3& shift : copies(stand, glm::ivec2(kDrawnAround)))
     for (std::uint32_t number = 0; number < stand.trees.size(); ++number) {
       const DrawnTree& tree = stand.trees[number];
       seen_.push_back({.tree = number, .kind = tree.kind, .position = tree.position + shift});
@@ -151,7 +169,9 @@ void StandData::placeGround(const DrawnStand& stand) {
   frame_.ground_albedo = glm::vec4(stand.ground_albedo, anyAbove(stand.ground_albedo, 0.f) ? 1.f : 0.f);
   frame_.period = glm::vec4(0.f);
   if (stand.period)
-    frame_.period = glm::vec4(*stand.period, glm::vec2(ground_.centre) - 0.5f * *stand.period);
+    frame_.period =
+        glm::vec4(*stand.period, stand.ground_sky.irradiance.empty() ? glm::vec2(ground_.centre) - 0.5f * *stand.period
+                                                                     : stand.ground_sky.grid.low);
 }
 
 std::size_t StandData::sendGrids(const DrawnStand& stand) {
@@ -159,8 +179,12 @@ std::size_t StandData::sendGrids(const DrawnStand& stand) {
   std::vector<Bounds> lit_boxes;
   for (const DrawnTree& tree : stand.trees)
     if (!kinds_[tree.kind].levels.box.empty()) lit_boxes.push_back(moved(kinds_[tree.kind].levels.box, tree.position));
-  const glm::vec3 half = stand.period ? glm::vec3(0.5f * *stand.period, 0.f) : glm::vec3(ground_.radius, ground_.radius, 0.f);
-  lit_boxes.push_back({ground_.centre - half, ground_.centre + half});
+  const glm::vec3 half(ground_.radius, ground_.radius, 0.f);
+  const glm::vec3 start(frame_.period.z, frame_.period.w, ground_.centre.z);
+  if (stand.period)
+    lit_boxes.push_back({start, start + glm::vec3(*stand.period, 0.f)});
+  else
+    lit_boxes.push_back({ground_.centre - half, ground_.centre + half});
 
   std::vector<std::uint32_t> first_of_cells;
   std::vector<CasterData> casters;
@@ -203,6 +227,7 @@ void StandData::bind() const {
   cells_.bind(4, 5);
   triangles_.bind(7);
   sky_.bind(8);
+  ground_sky_.bind(9);
 }
 
 }  // namespace sunfleck::gl

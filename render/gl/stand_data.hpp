@@ -12,7 +12,7 @@
 #include "render/gl/detail/frame_data.hpp"
 #include "render/gl/drawn_stand.hpp"
 #include "render/gl/map_pool.hpp"
-#include "render/gl/sky_texture.hpp"
+#include "render/gl/radiance_texture.hpp"
 #include "render/gl/tree_levels.hpp"
 #include "render/gl/tree_mesh_buffers.hpp"
 
@@ -63,6 +63,7 @@ class StandData {
 
  private:
   std::size_t updateMeshes(const DrawnStand& stand);
+  std::size_t updateSky(const DrawnStand& stand);
   std::size_t updateTrees(const DrawnStand& stand);
   void placeGround(const DrawnStand& stand);
   std::size_t sendGrids(const DrawnStand& stand);
@@ -73,7 +74,9 @@ class StandData {
   std::vector<std::uint32_t> first_triangle_;  // of each kind
   MapPool maps_;
   CellAtlas cells_;
-  SkyTexture sky_;
+  RadianceTexture sky_, ground_sky_;
+  std::shared_ptr<const SkyMap> sent_sky_;
+  std::uint64_t sent_ground_sky_ = 0;
   BufferTexture triangles_, light_cells_, light_casters_;
   std::optional<Buffer> trees_, drawn_, kind_frames_;
   std::vector<Seen> seen_;

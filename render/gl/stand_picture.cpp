@@ -100,7 +100,10 @@ Image standPicture(const Context& context, StandRenderer& renderer, const Camera
       const auto draw = [&](int number, bool accumulate) {
         view.offset = sampleOffset(number);
         view.accumulate = accumulate;
-        renderer.draw(view, target);
+        if (effort.visible)
+          renderer.draw(view, target, effort.visible(view, target.size()));
+        else
+          renderer.draw(view, target);
       };
       const auto copy = [&](bool sums) {
         for (std::size_t i = 0; i < layers.size(); ++i)
@@ -126,7 +129,7 @@ Image scenePicture(const Scene& scene, const StandGeometry& geometry, const Pict
   const Camera camera = cameraOf(scene);
   requireDrawable(camera);
   const Context context;
-  StandRenderer renderer(context);
+  StandRenderer renderer(context, effort.exact);
   renderer.update(drawnStand(scene, geometry));
   return standPicture(context, renderer, camera, effort, progress);
 }

@@ -45,20 +45,11 @@ void destroyArray(unsigned name) {
   glDeleteVertexArrays(1, &name);
 }
 
-shading::ShadingData shadingData(Model model, const StandData& stand) {
-  shading::ShadingData data{
-      .kinds = {}, .lights = {}, .constants = shading::shadingModel(model).constants(stand.treeKinds())};
-  for (const TreeKind& kind : stand.treeKinds()) {
-    shading::KindOptics& optics = data.kinds.emplace_back();
-    for (int band = 0; band < kBands; ++band) {
-      optics.leaf_reflectance[band] = kind.leaf[static_cast<std::size_t>(band)].reflectance;
-      optics.leaf_transmittance[band] = kind.leaf[static_cast<std::size_t>(band)].transmittance;
-      optics.wood_reflectance[band] = kind.wood_reflectance[band];
-    }
-  }
-  for (const DrawnLight& light : stand.lights())
-    data.lights.push_back({.travel = glm::vec4(light.along, 0.f), .irradiance = glm::vec4(light.irradiance, 0.f)});
-  return data;
+std::vector<shading::ShadingLight> shadingLights(std::span<const DrawnLight> lights) {
+  std::vector<shading::ShadingLight> result;
+  for (const DrawnLight& light : lights)
+    result.push_back({.travel = glm::vec4(light.along, 0.f), .irradiance = glm::vec4(light.irradiance, 0.f)});
+  return result;
 }
 
 }  // namespace
@@ -75,6 +66,8 @@ struct StandRenderer::Programs {
     auto operator<=>(const Purpose&) const = default;
   };
   std::map<Purpose, Program> shading;
+  spp::PowerTableOf exact;
+  std::map<Model, shading::ShadingData> data;
   std::map<Model, ShadingBuffers> buffers;  // of the stand as it is
 
   const Program& shadingFor(const Purpose& purpose) {
@@ -91,13 +84,18 @@ struct StandRenderer::Programs {
   }
   const ShadingBuffers& buffersOf(Model model, const StandData& stand) {
     auto found = buffers.find(model);
-    if (found == buffers.end()) found = buffers.emplace(model, ShadingBuffers(shadingData(model, stand))).first;
+    if (found == buffers.end()) {
+      update(data[model], model, stand.treeKinds(), shadingLights(stand.lights()), exact);
+      found = buffers.emplace(model, ShadingBuffers(data[model])).first;
+    }
     return found->second;
   }
 };
 
-StandRenderer::StandRenderer(const Context& context) 
-    : context_(&context), frame_(Buffer::writable(sizeof(FrameData))), programs_(std::make_unique<Programs>()) {}
+StandRenderer::StandRenderer(const Context& context, const spp::PowerTableOf& exact)
+    : context_(&context), frame_(Buffer::writable(sizeof(FrameData))), programs_(std::make_unique<Programs>()) {
+  programs_->exact = exact;
+}
 StandRenderer::~StandRenderer() = default;
 
 Sent StandRenderer::update(const DrawnStand& stand) {
@@ -111,8 +109,8 @@ Sent StandRenderer::update(const DrawnStand& stand) {
 float StandRenderer::reach(const View& view) const {
   float reach = glm::length(data_.ground().centre - view.camera.target) + 1.5f * data_.ground().radius;
   if (!data_.box().empty())
-    reach = std::max(reach, glm::length(data_.box().centre() - view.camera.target) +
-                                0.5f * glm::length(data_.box().size()));
+    reach = std::max(reach,
+                     glm::length(data_.box().centre() - view.camera.target) + 0.5f * glm::length(data_.box().size()));
   return reach;
 }
 
@@ -171,15 +169,13 @@ std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const 
     const float away = (ground.centre.z - look.from.z) / look.along.z;
     const glm::vec3 there = look.from + away * look.along;
     const bool seen = data_.frame().ground_albedo.w > 0.f && look.along.z < 0.f &&
-                      (away > 0.f || !view.camera.perspective()) &&
-                      glm::distance(there, ground.centre) < ground.radius;
+                      (away > 0.f || !view.camera.perspective()) && glm::distance(there, ground.centre) < ground.radius;
     return seen ? std::optional<Pick>({.tree = {}, .leaf = {}, .place = there}) : std::nullopt;
   }
   const StandData::Seen seen = data_.seen(id.x);
   const TriangleData& triangle = data_.kinds()[seen.kind].levels.triangles[id.y];
   const glm::vec3 normal = glm::normalize(glm::vec3(triangle.plane));
-  const float away =
-      (triangle.plane.w - glm::dot(normal, look.from - seen.position)) / glm::dot(normal, look.along);
+  const float away = (triangle.plane.w - glm::dot(normal, look.from - seen.position)) / glm::dot(normal, look.along);
   Pick pick{.tree = seen.tree, .leaf = {}, .place = look.from + away * look.along};
   if (triangle.leaf < TriangleData::kThinWood) pick.leaf = triangle.leaf;
   return pick;

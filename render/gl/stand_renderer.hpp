@@ -11,6 +11,7 @@
 #include "render/gl/frame_target.hpp"
 #include "render/gl/stand_data.hpp"
 #include "render/gl/view.hpp"
+#include "spp/power_table.hpp"
 
 namespace sunfleck::gl {
 
@@ -27,17 +28,19 @@ struct Pick {
   glm::vec3 place{0.f};               // where the line of sight meets it [m]
 };
 
-// (R24) A stand on the GPU, seen by any camera and shaded by any model: what each pixel shows is found first, then every
-// pixel is shaded once. A `context` must be current wherever it is used, and outlive it.
+// (R24) A stand on the GPU, seen by any camera and shaded by any model: what each pixel shows is found first, then
+// every pixel is shaded once. A `context` must be current wherever it is used, and outlive it.
 class StandRenderer {
  public:
-  explicit StandRenderer(const Context& context);
+  //   exact  of slabs of a kind of leaves, for models of the exact solution; without it they throw
+  //   std::invalid_argument
+  explicit StandRenderer(const Context& context, const spp::PowerTableOf& exact = {});
   ~StandRenderer();
   StandRenderer(const StandRenderer&) = delete;
   StandRenderer& operator=(const StandRenderer&) = delete;
 
-  // Sends what has changed since the last update, and says how much. Throws TooLarge with the figure where OpenGL cannot
-  // hold the stand.
+  // Sends what has changed since the last update, and says how much. Throws TooLarge with the figure where OpenGL
+  // cannot hold the stand.
   Sent update(const DrawnStand& stand);
 
   // Draws the stand into the target's textures. The same picture is the same bits on the same driver.

@@ -56,7 +56,8 @@ TreeLevels treeLevels(const TreeMesh& mesh) {
       if (enlargement[leaf] == 0.f) continue;
       LevelTriangle triangle = asItIs(mesh, mesh.leaf_triangles[t]);
       if (enlargement[leaf] != 1.f)
-        for (glm::vec3& corner : triangle.corners) corner = middles[leaf] + enlargement[leaf] * (corner - middles[leaf]);
+        for (glm::vec3& corner : triangle.corners)
+          corner = middles[leaf] + enlargement[leaf] * (corner - middles[leaf]);
       triangle.middle = middles[leaf];
       triangle.leaf = leaf;
       triangle.enlargement = enlargement[leaf];
@@ -69,12 +70,13 @@ TreeLevels treeLevels(const TreeMesh& mesh) {
   for (const glm::uvec3& triangle : mesh.wood_triangles) wood.push_back(asItIs(mesh, triangle));
   builder.add(levels.wood, wood, mesh.vertices.size(), 0.f);
 
-  const double all = std::accumulate(areas.begin(), areas.end(), 0.), mean = all / std::max<double>(1., mesh.leaf_count);
+  const double all = std::accumulate(areas.begin(), areas.end(), 0.),
+               mean = all / std::max<double>(1., mesh.leaf_count);
   for (double area = 2. * mean; area * kFewestLeaves <= all; area *= 2.) addLeaves(area);
   const glm::vec3 extent = levels.box.empty() ? glm::vec3(0.f) : levels.box.size();
   const float largest = std::max({extent.x, extent.y, extent.z}) / 16.f;
   std::size_t before = wood.size();
-  for (float reach = kFinestReach; reach < largest && static_cast<double>(before) > kFewestTriangles; reach *= 2.f) {
+  for (float reach = kFinestReach; reach<largest&& static_cast<double>(before)> kFewestTriangles; reach *= 2.f) {
     const float piece_area = kReachesSquared * reach * reach;
     const SimpleWood simple = simpleWood(mesh, reach, piece_area);
     if (simple.triangles.size() > 4 * before / 5) continue;  // hardly simpler

@@ -37,12 +37,12 @@ struct TriangleData {
 };
 static_assert(sizeof(TriangleData) == 32);
 
-// (R25) A tree as it is drawn, from all of its triangles to few. Each level draws a part of the small pieces, leaves and
-// bits of twigs, and these enlarged, so that area is kept: a piece of area a is there if its rank, a random number that
-// is the same each time, is below a / A, and then has the area A of the level (Cook et al. 2007). So levels are nested.
-// Wood that is not thin has its vertices joined within a distance that grows with the level (Rossignac & Borrel 1993).
-// Triangle i is the one whose last corner is vertex i: the first are those of the mesh, leaves before wood, as they
-// stand there.
+// (R25) A tree as it is drawn, from all of its triangles to few. Each level draws a part of the small pieces, leaves
+// and bits of twigs, and these enlarged, so that area is kept: a piece of area a is there if its rank, a random number
+// that is the same each time, is below a / A, and then has the area A of the level (Cook et al. 2007). So levels are
+// nested. Wood that is not thin has its vertices joined within a distance that grows with the level (Rossignac & Borrel
+// 1993). Triangle i is the one whose last corner is vertex i: the first are those of the mesh, leaves before wood, as
+// they stand there.
 struct TreeLevels {
   std::vector<glm::vec3> vertices;      // in the prototype's frame [m]
   std::vector<std::uint32_t> indices;   // three for each triangle, of each level

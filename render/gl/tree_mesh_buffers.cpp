@@ -36,8 +36,7 @@ void TreeMeshBuffers::draw(const VisibleTrees& visible) const {
   glVertexArrayVertexBuffer(array_.get(), 1, instances.name(), 0, sizeof(detail::DrawnData));
   glBindVertexArray(array_.get());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.name());
-  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(visible.commands.size()),
-                              0);
+  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(visible.commands.size()), 0);
 }
 
 void TreeMeshBuffers::destroy(unsigned name) {

@@ -15,16 +15,16 @@ namespace sunfleck::gl {
 struct View {
   Camera camera;
   Model model = Model::sppg;
-  glm::ivec2 low{0};            // lower left pixel of the target, in the camera's picture from its lower left
-  glm::vec2 offset{0.f};        // of the sample in each pixel from its middle [pixel]
-  bool accumulate = false;      // add to the radiances that the target holds
+  glm::ivec2 low{0};         // lower left pixel of the target, in the camera's picture from its lower left
+  glm::vec2 offset{0.f};     // of the sample in each pixel from its middle [pixel]
+  bool accumulate = false;   // add to the radiances that the target holds
   float piece_pixels = 0.f;  // leaves and twigs are drawn fewer and larger, up to so many pixels (R25); 0: as they are
   std::uint32_t layer_light = 0;  // whose foliage is told in layers
 };
 
-// Of the samples of a picture: each pair lies opposite about the middle of the pixel, so that the mean over the pixel of
-// what is linear in it is exact. An even count of samples is the first so many from number 1 on; number 0 is the middle.
-// The pairs follow the R2 sequence (Roberts 2018) [pixel].
+// Of the samples of a picture: each pair lies opposite about the middle of the pixel, so that the mean over the pixel
+// of what is linear in it is exact. An even count of samples is the first so many from number 1 on; number 0 is the
+// middle. The pairs follow the R2 sequence (Roberts 2018) [pixel].
 glm::vec2 sampleOffset(int number);
 
 // Clip coordinates (x, y in -1 .. 1 over the target, z from 1 near to 0 far) of a view into a target of `size` pixels.

@@ -68,7 +68,7 @@ VisibleTrees visibleTrees(const TreeLevels& levels, std::span<const detail::Draw
     visible.triangles += (end - first) / 3 * count;
   };
   // Trees seen wholly are drawn together where they have the same level; of others the clusters that are seen.
-  const auto drawLevels = [&](const std::vector<Level>& of, std::size_t Chosen::* level) {
+  const auto drawLevels = [&](const std::vector<Level>& of, std::size_t Chosen::*level) {
     for (std::size_t l = 0; l < of.size(); ++l) {
       const auto base = static_cast<std::uint32_t>(visible.instances.size());
       for (const Chosen& c : chosen)

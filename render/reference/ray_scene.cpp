@@ -78,36 +78,6 @@ glm::vec4 planeOf(const TreeMesh& mesh, const glm::uvec3& triangle, const glm::v
   return glm::vec4(glm::dvec4(normal, glm::dot(normal, (a + b + c) / 3.)));
 }
 
-void set(RTCRay& ray, const glm::vec3& from, const glm::vec3& direction, float reach) {
-  ray.org_x = from.x;
-  ray.org_y = from.y;
-  ray.org_z = from.z;
-  ray.dir_x = direction.x;
-  ray.dir_y = direction.y;
-  ray.dir_z = direction.z;
-  ray.tnear = 0.f;
-  ray.tfar = reach;
-  ray.time = 0.f;
-  ray.mask = ~0u;
-  ray.id = 0;
-  ray.flags = 0;
-}
-
-void set(RTCRay16& rays, std::size_t i, const glm::vec3& from, const glm::vec3& direction, float reach) {
-  rays.org_x[i] = from.x;
-  rays.org_y[i] = from.y;
-  rays.org_z[i] = from.z;
-  rays.dir_x[i] = direction.x;
-  rays.dir_y[i] = direction.y;
-  rays.dir_z[i] = direction.z;
-  rays.tnear[i] = 0.f;
-  rays.tfar[i] = reach;
-  rays.time[i] = 0.f;
-  rays.mask[i] = ~0u;
-  rays.id[i] = 0;
-  rays.flags[i] = 0;
-}
-
 RTCRayHit rayFrom(const glm::vec3& from, const glm::vec3& direction, float reach) {
   RTCRayHit ray;
   set(ray.ray, from, direction, reach);

@@ -4,18 +4,25 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 
+#include "spp/power_table.hpp"
 #include "spp/slab.hpp"
 
 namespace sunfleck::shading {
 
+using Number = float;
 using glm::dot;
 using glm::max;
 using glm::min;
+using glm::normalize;
+using spp::kTableDepths, spp::kTableThicknesses;
+using spp::select;
+using spp::TablePlace, spp::tablePlace, spp::tableValue;
+using std::abs, std::erfc, std::exp, std::sqrt;
 
 // The text shared with GLSL as members of a class: its functions read `kinds`, `lights` and model_constants.
 class FragmentShading::Text : public spp::StreamFormulas<float, 2> {
  public:
-  explicit Text(const ShadingData& data) : kinds(data.kinds), lights(data.lights) {}
+  explicit Text(const ShadingData& data) : kinds(data.kinds), lights(data.lights), gloss_tables(data.gloss_tables) {}
   virtual ~Text() = default;
   virtual Shaded shadeByLight(Surface, Foliage, float, float, uint) = 0;
   virtual Shaded shadeBySky(Surface, vec3) = 0;
@@ -23,7 +30,11 @@ class FragmentShading::Text : public spp::StreamFormulas<float, 2> {
 
   std::vector<KindOptics> kinds;
   std::vector<ShadingLight> lights;
+  std::vector<float> gloss_tables;
+#define SHARED_FN static inline
+#define SHARED_CONSTANT static constexpr
 #include "render/shading/surface.glsl"
+#include "scattering/gloss_formulas.glsl"
 };
 
 #define MODEL_CONSTANTS(Type)                                                                      \
@@ -58,6 +69,12 @@ struct FragmentShading::Texts {
 #include "render/shading/shade.glsl"
   };
 
+  struct Tables final : Text {
+    using Text::Text;
+#include "render/shading/shade.glsl"
+#include "render/shading/tables.glsl"
+  };
+
   static std::unique_ptr<Text> of(Model model, const ShadingData& data) {
     switch (model) {
       case Model::ss:
@@ -68,6 +85,9 @@ struct FragmentShading::Texts {
         return std::make_unique<Sppg>(data);
       case Model::nstreamg:
         return std::make_unique<NStreamG>(data);
+      case Model::sppr:
+      case Model::pp:
+        return std::make_unique<Tables>(data);
     }
     return nullptr;
   }

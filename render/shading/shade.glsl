@@ -2,23 +2,26 @@
 //   thickness     of the foliage along the light at the surface, a leaf itself included [1]
 //   compensation  G at the surface [1], 0 .. 1; read by models that need it
 Shaded shadeByLight(Surface surface, Foliage foliage, float thickness, float compensation, uint light) {
-  SidesLight direct = directOnSides(toLightCosine(surface, light), foliage.visible);
   Scattered scattered = scatteredLight(surface, foliage, thickness, compensation, light);
   vec3 irradiance = vec3(lights[light].irradiance);
   Shaded shaded;
-  for (int band = 0; band < 3; ++band)
-    shaded.direct[band] = irradiance[band] * lambertRadiance(direct, surface.reflectance[band], surface.transmittance[band]);
+  shaded.direct = irradiance * directRadiance(surface, light, foliage.visible);
   shaded.single = irradiance * scattered.single;
   shaded.multiple = irradiance * scattered.multiple;
   return shaded;
 }
 
-// What it sends of the environment's light, alike in all directions.
+// (R3) What it sends of the environment's light, alike in all directions; how often that was scattered before is not told.
 //   sky  its mean radiance at the surface, per band (D10)
 Shaded shadeBySky(Surface surface, vec3 sky) {
   Shaded shaded;
   shaded.direct = vec3(0.0f);
   shaded.single = vec3(0.0f);
   shaded.multiple = sky * (surface.reflectance + surface.transmittance);
+  if (surface.roughness > 0.0f) {
+    Gloss gloss = glossSeen(surface);
+    vec3 reflected = gloss.albedo * gloss.intensity;
+    shaded.multiple = reflected * sky + (vec3(1.0f) - reflected) * shaded.multiple;
+  }
   return shaded;
 }

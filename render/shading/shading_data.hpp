@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "render/model.hpp"
 #include "render/scene.hpp"
+#include "render/shading/shading_model.hpp"
 #include "render/stand_geometry.hpp"
 
 // The C++ face of the shading text's types (surface_types.glsl).
@@ -22,14 +24,18 @@ static_assert(kMostSurfaceKinds >= kMostKinds && kMostShadingLights >= kMostSuns
 
 // What shading reads beside the fragments: plain data, the same for graphics card and processor.
 struct ShadingData {
+  std::optional<Model> model;
+  std::vector<BandOptics> leaves;  // of each kind
   std::vector<KindOptics> kinds;
   std::vector<ShadingLight> lights;
-  std::vector<float> constants;  // the model's own (shading_model.hpp)
+  std::vector<float> gloss_tables;  // of each kind; nothing where none has a gloss
+  std::vector<float> constants;     // the model's own (shading_model.hpp)
 };
 
-// Kinds and lights as the stand numbers them.
-ShadingData shadingData(Model model, const Scene& scene, const StandGeometry& stand);
-// Of the scene's kinds, at most kMostSurfaceKinds, in lights as the caller numbers them, at most kMostShadingLights.
-ShadingData shadingData(Model model, std::span<const TreeKind> kinds, std::span<const StandLight> lights);
+// Brings the data up to date; what depends on leaves and model alone stays while these do.
+//   kinds, lights  as fragments number them, at most kMostSurfaceKinds and kMostShadingLights
+//   exact          for models of the exact solution; without it these throw std::invalid_argument
+void update(ShadingData& data, Model model, std::span<const TreeKind> kinds, std::span<const ShadingLight> lights,
+            const spp::PowerTableOf& exact = {});
 
 }  // namespace sunfleck::shading

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <stdexcept>
 
 #include "core/leaf_optics.hpp"
-#include "scattering/leaf_scattering.hpp"
 #include "spp/mode_numbers.hpp"
 #include "spp/slab.hpp"
 #include "spp/stream_constants.hpp"
@@ -22,11 +22,11 @@ std::vector<float> ofLeaves(std::span<const TreeKind> kinds, const Append& appen
   return numbers;
 }
 
-std::vector<float> none(std::span<const TreeKind>) {
+std::vector<float> none(std::span<const TreeKind>, const spp::PowerTableOf&) {
   return {};
 }
 
-std::vector<float> sppNumbers(std::span<const TreeKind> kinds) {
+std::vector<float> sppNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
   return ofLeaves(kinds, [](const LeafOptics& leaf, std::vector<float>& numbers) {
     numbers.push_back(leaf.albedo());
     numbers.push_back(spp::sphericalLeafForwardShare(leaf.reflectance, leaf.transmittance));
@@ -36,13 +36,9 @@ std::vector<float> sppNumbers(std::span<const TreeKind> kinds) {
 constexpr int kStreams = 2;  // STREAMS of the text
 
 // Leaves of all directions alike, lit along the slab's normal.
-std::vector<float> streamNumbers(std::span<const TreeKind> kinds) {
+std::vector<float> streamNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
   return ofLeaves(kinds, [](const LeafOptics& leaf, std::vector<float>& numbers) {
-    const spp::BeamInMedium beam(LeafScattering{.angles = LeafAngles::spherical(),
-                                                .reflectance = double{leaf.reflectance},
-                                                .transmittance = double{leaf.transmittance}},
-                                 1.);
-    const spp::StreamConstants constants = spp::nStreamConstants(beam, kStreams, 1);
+    const spp::StreamConstants constants = spp::nStreamConstants(spp::sphericalLeaves(leaf), kStreams, 1);
     numbers.push_back(static_cast<float>(constants.depth_scale / constants.beam_projection));
     numbers.push_back(static_cast<float>(constants.beam_rate));
     const std::vector<float> modes = spp::modeNumbers<float>(constants);
@@ -53,11 +49,35 @@ std::vector<float> streamNumbers(std::span<const TreeKind> kinds) {
   });
 }
 
+// The nodes' powers band by band within a node. Bands that are alike share their table.
+std::vector<float> tableNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf& table_of) {
+  std::vector<float> numbers;
+  for (const TreeKind& kind : kinds) {
+    std::array<spp::PowerTable, kBands> tables;
+    for (std::size_t band = 0; band < kBands; ++band)
+      tables[band] = band > 0 && kind.leaf[band] == kind.leaf[band - 1] ? tables[band - 1] : table_of(kind.leaf[band]);
+    for (std::size_t node = 0; node < tables[0].nodes.size(); ++node) {
+      for (const spp::PowerTable& table : tables) numbers.push_back(table.nodes[node].down);
+      for (const spp::PowerTable& table : tables) numbers.push_back(table.nodes[node].up);
+    }
+  }
+  return numbers;
+}
+std::vector<float> refinedNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
+  return tableNumbers(kinds, spp::refinedPowerTable);
+}
+std::vector<float> exactNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf& exact) {
+  if (!exact) throw std::invalid_argument("the model pp needs the exact solution");
+  return tableNumbers(kinds, exact);
+}
+
 constexpr std::array kShadingModels{
     ShadingModel{Model::ss, "render/shading/ss.glsl", none},
     ShadingModel{Model::spp, "render/shading/spp.glsl", sppNumbers},
     ShadingModel{Model::sppg, "render/shading/sppg.glsl", sppNumbers},
+    ShadingModel{Model::sppr, "render/shading/tables.glsl", refinedNumbers},
     ShadingModel{Model::nstreamg, "render/shading/nstreamg.glsl", streamNumbers},
+    ShadingModel{Model::pp, "render/shading/tables.glsl", exactNumbers},
 };
 
 }  // namespace

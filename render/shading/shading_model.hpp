@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "render/model.hpp"
 #include "render/scene.hpp"
+#include "spp/power_table.hpp"
 
 namespace sunfleck::shading {
 
@@ -14,7 +16,8 @@ struct ShadingModel {
   Model model;
   std::string_view text;  // file that defines scatteredLight()
   // What the text reads as model_constants, for all kinds: one number after the other, as its struct holds them.
-  std::vector<float> (*constants)(std::span<const TreeKind> kinds);
+  // Throws std::invalid_argument without `exact` where it is needed.
+  std::vector<float> (*constants)(std::span<const TreeKind> kinds, const spp::PowerTableOf& exact);
 };
 
 const ShadingModel& shadingModel(Model model);

@@ -7,6 +7,8 @@ const uint kMostShadingLights = 4u;
 struct KindOptics {
   vec4 leaf_reflectance;
   vec4 leaf_transmittance;
+  vec4 leaf_gloss;    // intensity rho_s (R20); w: roughness, 0 for leaves without a gloss
+  vec4 gloss_entering;  // mean share that such a gloss lets in
   vec4 wood_reflectance;
 };
 
@@ -16,12 +18,14 @@ struct ShadingLight {
   vec4 irradiance;  // xyz: of a plane that faces it, per band
 };
 
-// What the eye sees of a leaf, of wood or of the ground: two sides that scatter by Lambert's law.
+// What the eye sees of a leaf, of wood or of the ground: two sides that scatter by Lambert's law,
+// of a leaf under a gloss if it has one.
 struct Surface {
   vec3 normal;         // on the eye's side
   vec3 to_eye;         // unit vector
   vec3 reflectance;    // per band [1]
   vec3 transmittance;
+  float roughness;     // of the gloss, 0 where there is none
   uint kind;           // whose leaves make the slab around it
   uint tree;           // of the stand; for models that know each leaf
   uint leaf;           // of the tree; 0xffffffff for wood and ground

@@ -17,11 +17,11 @@ struct LightFrame {
 struct FrameData {
   glm::mat4 clip_from_world{1.f};
   glm::vec4 eye{0.f}, sight{0.f}, corner{0.f}, pixel_right{0.f}, pixel_up{0.f};
-  glm::vec4 ground{0.f}, ground_albedo{0.f}, period{0.f}, sky_azimuth{0.f};
+  glm::vec4 ground{0.f}, ground_albedo{0.f}, period{0.f}, sky_azimuth{0.f}, ground_cells{0.f}, ground_open{0.f};
   glm::uvec4 counts{0u}, cells{1u}, blocks{0u};
   std::array<LightFrame, 4> lights{};
 };
-static_assert(sizeof(FrameData) == 64 + 12 * 16 + 4 * 64);
+static_assert(sizeof(FrameData) == 64 + 14 * 16 + 4 * 64);
 
 struct TreeData {
   glm::vec4 position{0.f};

@@ -7,7 +7,41 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <cstddef>
+#include <glm/vec3.hpp>
+
 namespace sunfleck::detail {
+
+// A ray that `reach` [m] ends.
+inline void set(RTCRay& ray, const glm::vec3& from, const glm::vec3& direction, float reach) {
+  ray.org_x = from.x;
+  ray.org_y = from.y;
+  ray.org_z = from.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tnear = 0.f;
+  ray.tfar = reach;
+  ray.time = 0.f;
+  ray.mask = ~0u;
+  ray.id = 0;
+  ray.flags = 0;
+}
+
+inline void set(RTCRay16& rays, std::size_t i, const glm::vec3& from, const glm::vec3& direction, float reach) {
+  rays.org_x[i] = from.x;
+  rays.org_y[i] = from.y;
+  rays.org_z[i] = from.z;
+  rays.dir_x[i] = direction.x;
+  rays.dir_y[i] = direction.y;
+  rays.dir_z[i] = direction.z;
+  rays.tnear[i] = 0.f;
+  rays.tfar[i] = reach;
+  rays.time[i] = 0.f;
+  rays.mask[i] = ~0u;
+  rays.id[i] = 0;
+  rays.flags[i] = 0;
+}
 
 enum class Coherence { incoherent, coherent };
 

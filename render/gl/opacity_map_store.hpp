@@ -1,0 +1,39 @@
+#pragma once
+
+#include <list>
+#include <memory>
+
+#include "core/tree_mesh.hpp"
+#include "render/gl/opacity_maps.hpp"
+
+namespace sunfleck::gl {
+
+// Opacity maps of trees along lights, made on the graphics card when they are first asked for and kept there while they
+// are in use: of each tree those of the last few lights.
+class OpacityMapStore {
+ public:
+  // As OpacityMapMaker's constructor and make(); what it returns stays until as many others as there may be lights have
+  // been asked for of that tree.
+  explicit OpacityMapStore(const Context& context) : maker_(context) {}
+  const OpacityMap& map(const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution);
+
+  // The last that was made of that tree along that light, if it is still there.
+  const OpacityMap* find(const std::shared_ptr<const TreeMesh>& mesh, Direction along) const;
+  std::size_t kept() const;  // number of maps
+
+ private:
+  struct Kept {
+    Direction along;
+    int resolution;
+    OpacityMap map;
+  };
+  struct Tree {
+    std::shared_ptr<const TreeMesh> mesh;
+    MappedTree mapped;
+    std::list<Kept> maps;  // the last that was asked for first
+  };
+  OpacityMapMaker maker_;
+  std::list<Tree> trees_;
+};
+
+}  // namespace sunfleck::gl

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <vector>
+
+namespace sunfleck {
+
+// (R26) What a gloss of this roughness sends to the eye of light from half of the sphere: the numbers that
+// gloss_formulas.glsl says where to find. Shinya et al. 2013, Eq. 32.
+std::vector<float> glossTables(float roughness);
+
+}  // namespace sunfleck
