@@ -1,12 +1,8 @@
 #!/usr/bin/env bash
 # Check that a trace that is killed a hundred times, at random moments, ends with the bits of one that never was: its
 # file byte for byte, and what it prints. Usage: killed_trace.sh PATH_TO_SUNFLECK [KILLS]
-set -u
-program=$(readlink -f "$1")
+source "$(dirname "$0")/as_a_user.bash" "$1"
 wanted=${2:-100}
-place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
-cd "$place" || exit 1
 # Three thousand leaves and bands of three colours make a file of a megabyte, written after every unit: most of the time
 # goes into writing.
 awk 'BEGIN { srand(1); print "usemtl leaf"
