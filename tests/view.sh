@@ -2,14 +2,8 @@
 # Runs the viewer by scripts, without a window or in one: pictures must be equal where nothing may differ, changes must
 # compute what they need and nothing else, and what is wrong must end in one line. Usage: view.sh PATH_TO_SUNFLECK WAY
 #   WAY  "offscreen", or "window" to open one on the display of xvfb-run; status 77 where there is no such program
-set -u
-program=$(readlink -f "$1")
+source "$(dirname "$0")/as_a_user.bash" "$1"
 way=$2
-place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
-cd "$place" || exit 1
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 if [ "$way" = window ]; then
   command -v xvfb-run >/dev/null || { echo "skipped: there is no xvfb-run (package xvfb)"; exit 77; }
@@ -25,8 +19,8 @@ runs() {
   [ $status -eq 0 ] || fail "$1: status $status: $(head -c 600 stderr.txt)"
   [ ! -s stderr.txt ] || fail "$1: wrote to stderr: $(head -c 600 stderr.txt)"
 }
-# refuses STATUS WHAT_THE_MESSAGE_MUST_HOLD SCRIPT_TEXT
-refuses() {
+# stops STATUS WHAT_THE_MESSAGE_MUST_HOLD SCRIPT_TEXT
+stops() {
   printf '%b' "$3" >wrong.txt
   view trees.toml --script wrong.txt >stdout.txt 2>stderr.txt </dev/null
   local status=$?
@@ -225,16 +219,16 @@ done
 cmp -s one.png two.png || fail "Monte Carlo differs from run to run"
 
 view trees.toml --frames 3 >stdout.txt 2>stderr.txt || fail "--frames 3: $(cat stderr.txt)"
-refuses 2 'wrong.txt:2: sun ZENITH = "200": must be in [0, 180]' 'undo\nsun 200 0\n'
-refuses 2 'wrong.txt:1: tree = 9: must be' 'select 9\n'
-refuses 2 'wrong.txt:1: model = "none": must be one of ss' 'model none\n'
-refuses 2 'wrong.txt:1: x.gif' 'screenshot x.gif\n'
-refuses 2 'wrong.txt:1: no tree is selected' 'move 1 1\n'
-refuses 2 'wrong.txt:2: camera "x"' '\ncamera load x\n'
-refuses 2 'wrong.txt:1: directions' 'directions 3\n'
-refuses 2 'wrong.txt:1: wait reference' 'wait reference 0.1\n'
-refuses 1 'wrong.txt:1: expected 7 trees, but there are 3' 'expect trees 7\n'
-refuses 1 'but recomputed' 'expect recomputed none\n'
+stops 2 'wrong.txt:2: sun ZENITH = "200": must be in [0, 180]' 'undo\nsun 200 0\n'
+stops 2 'wrong.txt:1: tree = 9: must be' 'select 9\n'
+stops 2 'wrong.txt:1: model = "none": must be one of ss' 'model none\n'
+stops 2 'wrong.txt:1: x.gif' 'screenshot x.gif\n'
+stops 2 'wrong.txt:1: no tree is selected' 'move 1 1\n'
+stops 2 'wrong.txt:2: camera "x"' '\ncamera load x\n'
+stops 2 'wrong.txt:1: directions' 'directions 3\n'
+stops 2 'wrong.txt:1: wait reference' 'wait reference 0.1\n'
+stops 1 'wrong.txt:1: expected 7 trees, but there are 3' 'expect trees 7\n'
+stops 1 'but recomputed' 'expect recomputed none\n'
 view missing.toml --frames 1 >stdout.txt 2>stderr.txt
 [ $? -eq 2 ] || fail "a missing scene: $(cat stderr.txt)"
 
@@ -252,5 +246,4 @@ if [ "$way" = window ]; then
   [ $? -eq 1 ] || fail "an old OpenGL is no failure"
   grep -q "needs OpenGL 4.5" stderr.txt || fail "an old OpenGL: $(cat stderr.txt)"
 fi
-[ $failures -eq 0 ] && echo "all well"
-exit $((failures > 0))
+conclude
