@@ -28,8 +28,7 @@ int runView(const ViewOptions& options) {
   viewer.name = options.scene.scene;
   viewer.read = [options] {
     view::Document document;
-    for (const Model model : kModels)
-      if (nameOf(model) == options.model) document.model = model;
+    document.model = modelNamed(options.model).value_or(document.model);
     document.scene = readScene(options.scene);
     apply(options.camera, document.scene);
     if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(document.scene);
@@ -56,10 +55,10 @@ void addView(CLI::App& app, RunOptions& options, int& status) {
   CLI::App* command = addCommand(app, options, "view", "Look at a scene in a window, and change it");
   addSceneOptions(*command, view->scene);
   addCameraOptions(*command, view->camera);
-  std::vector<std::string> models;
-  for (const Model model : kModels) models.push_back(nameOf(model));
-  command->add_option("--model", view->model, "Scattering model to begin with (default sppg)")
-      ->check(CLI::IsMember(models));
+  command->add_option("--model", view->model, "Scattering model to begin with: " + modelNames() + " (default sppg)")
+      ->check([](const std::string& name) {
+        return modelNamed(name) ? std::string() : "model \"" + name + "\": must be one of " + modelNames();
+      });
   addDisplayOptions(*command, view->display);
   const std::string group = "Window";
   command->add_option("--window", view->window, "Width and height of the window, in pixels (default 1440 900)")

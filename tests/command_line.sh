@@ -40,6 +40,11 @@ done
 refuses "folder" plant folder/x.obj
 refuses "--frobnicate" validate --frobnicate
 refuses "frobnicate" frobnicate
+refuses "--model" view leaf.obj --model none
+refuses "--window" view leaf.obj --window 0 100
+refuses "missing.txt" view leaf.obj --script missing.txt
+refuses "garbage.obj:1" view leaf.obj --script garbage.obj
+refuses "missing.obj" view missing.obj --offscreen --frames 1
 refuses "--albedo" validate leaf.obj --albedo 1.5
 refuses "--albedo" trace leaf.obj --albedo -0.1
 refuses "--albedo" render leaf.obj -o x.png --albedo nan

@@ -1,32 +1,26 @@
 #!/usr/bin/env bash
-# Runs the viewer by scripts, without a window and in one: pictures must be equal where nothing may differ, changes must
-# compute what they need and nothing else, and what is wrong must end in one line. Usage: view.sh PATH_TO_SUNFLECK WINDOW
-#   WINDOW  "offscreen", or "window" to open one on the display of xvfb-run; 77 where there is no such program
-set -u
-program=$(readlink -f "$1")
+# Runs the viewer by scripts, without a window or in one: pictures must be equal where nothing may differ, changes must
+# compute what they need and nothing else, and what is wrong must end in one line. Usage: view.sh PATH_TO_SUNFLECK WAY
+#   WAY  "offscreen", or "window" to open one on the display of xvfb-run; status 77 where there is no such program
+source "$(dirname "$0")/as_a_user.bash" "$1"
 way=$2
-place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
-cd "$place" || exit 1
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 if [ "$way" = window ]; then
-  command -v xvfb-run >/dev/null || { echo "no xvfb-run: install xvfb"; exit 77; }
+  command -v xvfb-run >/dev/null || { echo "skipped: there is no xvfb-run (package xvfb)"; exit 77; }
+  export WAYLAND_DISPLAY=
   view() { xvfb-run -a -s "-screen 0 1280x1024x24" "$program" view "$@"; }
 else
   view() { "$program" view --offscreen "$@"; }
 fi
-# runs SCRIPT_FILE OPTIONS...: must end well and say nothing on stderr
+# runs SCRIPT_FILE SCENE: must end well and say nothing on stderr
 runs() {
-  local script=$1; shift
-  view "$@" --script "$script" >stdout.txt 2>stderr.txt </dev/null
+  view "$2" --script "$1" >stdout.txt 2>stderr.txt </dev/null
   local status=$?
-  [ $status -eq 0 ] || fail "$script: status $status: $(head -c 600 stderr.txt)"
-  [ ! -s stderr.txt ] || fail "$script: wrote to stderr: $(head -c 600 stderr.txt)"
+  [ $status -eq 0 ] || fail "$1: status $status: $(head -c 600 stderr.txt)"
+  [ ! -s stderr.txt ] || fail "$1: wrote to stderr: $(head -c 600 stderr.txt)"
 }
-# refuses STATUS WHAT_THE_MESSAGE_MUST_HOLD SCRIPT_TEXT
-refuses() {
+# stops STATUS WHAT_THE_MESSAGE_MUST_HOLD SCRIPT_TEXT
+stops() {
   printf '%b' "$3" >wrong.txt
   view trees.toml --script wrong.txt >stdout.txt 2>stderr.txt </dev/null
   local status=$?
@@ -35,10 +29,10 @@ refuses() {
   grep -qF -- "$2" stderr.txt || fail "'$3': \"$2\" is not in: $(cat stderr.txt)"
 }
 
-# A small tree: 60 leaves and a trunk, two of them and a ground.
+# Three small trees of 60 leaves and a trunk.
 awk 'BEGIN { srand(3)
-  for (i = 0; i < 60; i++) { x = 2 * rand() - 1; y = 2 * rand() - 1; z = 1 + 2 * rand(); s = 0.15
-    printf "v %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\n", x-s, y, z-s*rand(), x, y-s, z, x+s, y, z+s*rand(), x, y+s, z }
+  for (i = 0; i < 60; i++) { x = 2 * rand() - 1; y = 2 * rand() - 1; z = 1 + 2 * rand(); s = 0.15; t = s * (2 * rand() - 1)
+    printf "v %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\n", x-s, y-s, z-t, x+s, y-s, z-t, x+s, y+s, z+t, x-s, y+s, z+t }
   print "v -0.1 0 0\nv 0.1 0 0\nv 0 0 2\nusemtl leaf"
   for (i = 0; i < 60; i++) print "f", 4*i+1, 4*i+2, 4*i+3, 4*i+4
   print "usemtl bark\nf 241 242 243" }' >small.obj
@@ -54,6 +48,7 @@ albedo = 0.16
 zenith_deg = 30
 END
 
+# The sun turned, a tree dragged, undone; 1 x 1 and large, minimised, compared.
 cat >changes.txt <<'END'
 panels off
 samples 4
@@ -61,21 +56,20 @@ resize 200 160
 wait ready
 expect recomputed light_maps        # all was made once
 screenshot start.png
-screenshot again.png
-expect same start.png again.png
+camera save first
 camera orbit 70 20
 wait ready
 expect recomputed none              # the camera makes nothing anew
 screenshot turned.png
 camera save side
-camera orbit 20 10
-camera load side
+camera load first
 wait ready
-screenshot loaded.png
-expect same turned.png loaded.png
+screenshot again.png
+expect same start.png again.png
+camera load side
 sun 50 120
 wait ready
-expect recomputed light_maps
+expect recomputed light_maps 1
 screenshot sun.png
 undo
 wait ready
@@ -85,54 +79,55 @@ redo
 wait ready
 screenshot redone.png
 expect same sun.png redone.png
-undo 9                              # more than there is
-wait ready
+expect recomputed light_maps 2      # there and back
 leaf albedo 0.3
-wait ready
-expect trees 3
 model ss
 wait ready
-model sppg
+expect recomputed light_maps 0      # the former ones serve
+undo 2
 select 2
 move 0.5 0.25
 wait ready
-expect recomputed none              # it is on its way: only the next line asks for it
-END
-sed -i '$d' changes.txt
-cat >>changes.txt <<'END'
-expect recomputed light_maps 0      # of a moved tree no map is made
+expect recomputed depths            # of the trees around it
 copy 0 3
+wait ready
+expect recomputed light_maps 0      # all trees share the kind's
 expect trees 4
 expect selected 4
 delete
-expect trees 3
 add 6 6
 paint 12 12 3 2
-redo
-undo 2
+undo 3
+expect trees 4
+undo
 expect trees 3
 wait ready
 resize 1 1
 wait ready
-resize 1500 1100
+resize 1100 800
 wait ready
-resize 200 160
 minimise
 frames 3
 restore
+resize 200 160
 wait ready
 sun 120 0                           # night
 wait ready
+screenshot night.png
 sun 30 0
 sky uniform 0.3
 wait ready
 sky none
 ground 0
+layer thickness
+wait ready
+layer total
 compare with ss
 compare wipe 0.5
 wait ready
 screenshot wipe.png
 compare flip
+wait ready
 compare difference
 wait ready
 screenshot difference.png
@@ -140,27 +135,64 @@ exr layers.exr
 compare off
 END
 runs changes.txt trees.toml
-for file in start turned sun wipe difference; do [ -s $file.png ] || fail "no $file.png"; done
-cmp -s start.png turned.png && fail "turning the camera changes nothing"
-cmp -s turned.png sun.png && fail "turning the sun changes nothing"
+for file in start turned sun night wipe difference; do [ -s $file.png ] || fail "no $file.png"; done
+for pair in "start turned" "turned sun" "sun night" "wipe difference"; do
+  set -- $pair
+  cmp -s "$1.png" "$2.png" && fail "$1.png and $2.png are the same"
+done
 [ -s layers.exr ] || fail "no layers.exr"
 
-# A tree is picked and dragged on the ground by the mouse, in one step of undo.
-cat >drag.txt <<'END'
+# From straight above, 0.02 m to a pixel: the first tree's leaves fill the middle of the picture. A click selects it, a drag
+# moves it by 50 pixels, which is one step.
+cat >above.toml <<'END'
+[tree]
+file = "small.obj"
+[stand]
+kind = "positions"
+positions = [[0, 0], [40, 0]]
+[camera]
+target = [0, 0, 0]
+elevation_deg = 90
+half_width = 3
+width = 300
+height = 300
+END
+cat >mouse.txt <<'END'
 panels off
 samples 1
 resize 300 300
-camera orbit 0 60
-camera whole
-select none
 wait ready
+pick 3 3
+expect selected 0
 screenshot before.png
-pick 10 10
+drag CLICK CLICK
+wait ready
+expect selected 1
+drag CLICK TO
+wait ready
+screenshot moved.png
+undo
+wait ready
+screenshot undone.png
+expect same before.png undone.png
+press escape
+press tab
+wait ready
 expect selected 0
 END
-runs drag.txt trees.toml
+# Where a leaf is seen: told by the probe.
+{ echo "panels off"; echo "resize 300 300"; for x in $(seq 110 8 190); do echo "probe $x 150"; done; } >look.txt
+runs look.txt above.toml
+at=$(awk '/leaf/ { print $1, 150; exit }' stdout.txt)
+if [ -n "$at" ]; then
+  sed -i "s/CLICK CLICK/$at $at/; s/CLICK TO/$at $((${at% *} + 50)) 150/" mouse.txt
+  runs mouse.txt above.toml
+  cmp -s before.png moved.png && fail "a dragged tree stays where it was"
+else
+  fail "no leaf is seen from above: $(cat stdout.txt)"
+fi
 
-# The scene that is saved is the one that was shown.
+# The scene that is saved is the one that was shown, and what other commands read.
 cat >save.txt <<'END'
 panels off
 samples 2
@@ -172,54 +204,46 @@ wait ready
 screenshot shown.png
 save saved.toml
 END
-cat >open.txt <<'END'
-panels off
-samples 2
-resize 160 120
-wait ready
-screenshot opened.png
-END
+printf 'panels off\nsamples 2\nresize 160 120\nwait ready\nscreenshot opened.png\n' >open.txt
 runs save.txt trees.toml
 runs open.txt saved.toml
 cmp -s shown.png opened.png || fail "the saved scene looks different"
+"$program" render saved.toml -o rendered.png >/dev/null 2>stderr.txt || fail "render of the saved scene: $(cat stderr.txt)"
 
 # Monte Carlo beside a model, the same on every run.
-cat >reference.txt <<'END'
-panels off
-samples 4
-resize 80 60
-compare with reference
-compare flip
-wait reference 0.3
-screenshot FILE
-compare difference
-wait reference 0.3
-screenshot difference_FILE
-END
-for file in one.png two.png; do sed "s/FILE/$file/" reference.txt >of.txt; runs of.txt trees.toml; done
+for run in one two; do
+  printf '%s\n' "panels off" "samples 2" "resize 60 40" "wait ready" "compare with reference" "compare flip" \
+    "wait reference 0.5" "screenshot $run.png" >reference.txt
+  runs reference.txt trees.toml
+done
 cmp -s one.png two.png || fail "Monte Carlo differs from run to run"
 
 view trees.toml --frames 3 >stdout.txt 2>stderr.txt || fail "--frames 3: $(cat stderr.txt)"
-
-refuses 2 'wrong.txt:2: sun ZENITH = "200": must be in [0, 180]' 'undo\nsun 200 0\n'
-refuses 2 'wrong.txt:1: tree = 9: must be' 'select 9\n'
-refuses 2 'wrong.txt:1: model = "none": must be one of ss' 'model none\n'
-refuses 2 'wrong.txt:1: x.gif' 'screenshot x.gif\n'
-refuses 2 'wrong.txt:1: no tree is selected' 'move 1 1\n'
-refuses 2 'wrong.txt:2: camera "x"' '\ncamera load x\n'
-refuses 1 'wrong.txt:1: expected 7 trees, but there are 3' 'expect trees 7\n'
-refuses 2 'wrong.txt:1: wait reference' 'wait reference 0.1\n'
-refuses 2 'wrong.txt' 'directions 3\n'
+stops 2 'wrong.txt:2: sun ZENITH = "200": must be in [0, 180]' 'undo\nsun 200 0\n'
+stops 2 'wrong.txt:1: tree = 9: must be' 'select 9\n'
+stops 2 'wrong.txt:1: model = "none": must be one of ss' 'model none\n'
+stops 2 'wrong.txt:1: x.gif' 'screenshot x.gif\n'
+stops 2 'wrong.txt:1: no tree is selected' 'move 1 1\n'
+stops 2 'wrong.txt:2: camera "x"' '\ncamera load x\n'
+stops 2 'wrong.txt:1: directions' 'directions 3\n'
+stops 2 'wrong.txt:1: wait reference' 'wait reference 0.1\n'
+stops 1 'wrong.txt:1: expected 7 trees, but there are 3' 'expect trees 7\n'
+stops 1 'but recomputed' 'expect recomputed none\n'
 view missing.toml --frames 1 >stdout.txt 2>stderr.txt
 [ $? -eq 2 ] || fail "a missing scene: $(cat stderr.txt)"
 
 if [ "$way" = window ]; then
-  env -u DISPLAY -u WAYLAND_DISPLAY "$program" view trees.toml --frames 1 >stdout.txt 2>stderr.txt
+  # The same pictures without a window.
+  mkdir unseen && cp small.obj trees.toml changes.txt unseen
+  (cd unseen && "$program" view trees.toml --offscreen --script changes.txt) 2>stderr.txt || fail "$(cat stderr.txt)"
+  for file in start turned sun night wipe difference; do
+    cmp -s $file.png unseen/$file.png || fail "$file.png differs without a window"
+  done
+  env -u DISPLAY "$program" view trees.toml --frames 1 >stdout.txt 2>stderr.txt
   [ $? -eq 1 ] || fail "no display is no failure"
   grep -q "needs a display" stderr.txt || fail "no display: $(cat stderr.txt)"
   MESA_GL_VERSION_OVERRIDE=3.3 view trees.toml --frames 1 >stdout.txt 2>stderr.txt
   [ $? -eq 1 ] || fail "an old OpenGL is no failure"
   grep -q "needs OpenGL 4.5" stderr.txt || fail "an old OpenGL: $(cat stderr.txt)"
 fi
-[ $failures -eq 0 ] && echo "all well"
-exit $((failures > 0))
+conclude

@@ -39,11 +39,13 @@ void Panels::drawCompare(Session& session, const FrameReport& report) {
   Look& look = session.look;
   ImGui::TextWrapped("A is %s.", nameOf(session.document().model).c_str());
   heading("B");
-  for (const Model model : kModels) {
-    if (ImGui::RadioButton(nameOf(model).c_str(), look.other == model)) look.other = model;
-    ImGui::SameLine();
+  if (ImGui::BeginTable("models", 3)) {
+    for (const Model model : kModels) {
+      ImGui::TableNextColumn();
+      if (ImGui::RadioButton(nameOf(model).c_str(), look.other == model)) look.other = model;
+    }
+    ImGui::EndTable();
   }
-  ImGui::NewLine();
   if (ImGui::RadioButton("Monte Carlo", !look.other)) look.other.reset();
   tip("The reference: computed in the background for this very picture, and refined while you look");
   heading("Shown");

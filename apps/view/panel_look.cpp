@@ -15,9 +15,14 @@ const char* aboutOf(Model model) {
       return "Simplified plane-parallel slab: all orders, but as if the crown had no edge";
     case Model::sppg:
       return "The slab compensated for the crown's edge by G";
-    default:
-      return "A model of the slab, compensated by G";
+    case Model::sppr:
+      return "SPP refined by one more scattering, with G";
+    case Model::nstreamg:
+      return "A slab by two streams in each half, with G";
+    case Model::pp:
+      return "The exact slab, from a table made once for these leaves, with G";
   }
+  return "";
 }
 
 }  // namespace

@@ -56,6 +56,8 @@ struct Apply {
       for (int band = 0; band < kBands; ++band)
         require((*edit.sky.irradiance)[band] >= 0. && (*edit.sky.irradiance)[band] <= kMostSkyIrradiance,
                 "irradiance of the sky", (*edit.sky.irradiance)[band], "in [0, 1000]");
+    if (edit.sky.kind == SceneSky::Kind::image && !edit.sky.image)
+      throw InvalidInput("a sky of kind image: must have an image");
     document.scene.sky = edit.sky;
     sunAndSky(document.scene);  // refuses a sky that cannot be
   }

@@ -65,6 +65,7 @@ void Session::advance() {
   if (const std::exception_ptr failure = worker_.failure()) {
     if (!loaded()) std::rethrow_exception(failure);
     attempt([&] { std::rethrow_exception(failure); });
+    shown_ = wished_;  // what is drawn stays until the next change
   }
   const bool working = worker_.state().busy;
   if (!loaded()) {
@@ -73,10 +74,10 @@ void Session::advance() {
     read_.reset();
     camera = cameraOf(document().scene);
   }
-  if (grown_ && !worker_.state().busy && *grown_) {
-    const TreeKind kind = std::move(**grown_);
+  if (grown_ && !worker_.state().busy) {  // it has ended, with a kind or without
+    const std::shared_ptr<std::optional<TreeKind>> kind = std::move(grown_);
     grown_.reset();
-    attempt([&] { edit(AddKind{kind, {glm::vec2(camera.target), groundHeight()}}); });
+    if (*kind) attempt([&] { edit(AddKind{**kind, {glm::vec2(camera.target), groundHeight()}}); });
   }
   if (wished_ != history_->revision() + 1) {
     wished_ = history_->revision() + 1;

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/require.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_writer.hpp"
@@ -38,7 +39,7 @@ Viewer::Viewer(const ViewerOptions& options)
       context_(contextFor(options)),
       gui_(window_->scale()),
       session_(options.name, options.read),
-      renderer_(*context_),
+      renderer_(*context_, exactPowerTable),
       tracing_(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)) {
   session_.look = options.look;
   renderer_.timePasses(true);
@@ -55,12 +56,14 @@ void Viewer::run() {
 bool Viewer::still() const {
   const bool b_is_drawn = session_.look.comparison == Comparison::off || !session_.look.other ||
                           (b_.done(session_.look.samples) && b_.key() == keyOf(*session_.look.other));
+  if (stand_ == 0 || input_.size == glm::ivec2(0))  // nothing to be drawn
+    return session_.upToDate() && !session_.work().busy && synthetic_.empty();
   return session_.upToDate() && !session_.work().busy && a_.done(session_.look.samples) &&
          a_.key() == keyOf(session_.document().model) && b_is_drawn && synthetic_.empty();
 }
 
 bool Viewer::settled() const {
-  constexpr int kTold = 2;  // frames after which the panels have told all
+  constexpr int kTold = 4;  // frames after which the panels have told all
   return still() && still_frames_ >= kTold;
 }
 
@@ -87,10 +90,15 @@ void Viewer::takeResult() {
   const auto result = session_.take();
   if (!result) return;
   const Elapsed sending;
-  const gl::Sent sent = renderer_.update(gl::drawnStand(result->made.scene, *result->geometry));
+  try {
+    const gl::Sent sent = renderer_.update(gl::drawnStand(result->made.scene, *result->geometry));
+    report_.sent_bytes = sent.meshes + sent.maps + sent.trees + sent.cells + sent.sky;
+    stand_ = result->made.revision;
+  } catch (const gl::TooLarge& e) {
+    session_.say(e.what(), true);
+    stand_ = 0;  // what the renderer holds is not to be drawn
+  }
   report_.sent_ms = 1e3 * sending.seconds();
-  report_.sent_bytes = sent.meshes + sent.maps + sent.trees + sent.cells + sent.sky;
-  stand_ = result->made.revision;
   drawn_trees_ = result->made.scene.stand.trees.size();
   session_.release(*result);
 }
@@ -227,7 +235,8 @@ void Viewer::saveWindow(const std::filesystem::path& file) const {
 void Viewer::saveExr(const std::filesystem::path& file) {
   if (file.extension() != ".exr") throw InvalidInput(file.string() + ": must end in .exr");
   requirePictureName(file);
-  gl::PictureEffort effort{.model = session_.document().model, .samples = session_.look.samples, .layers = {}};
+  gl::PictureEffort effort{
+      .model = session_.document().model, .samples = session_.look.samples, .layers = {}, .exact = exactPowerTable};
   for (int layer = 1; layer < gl::kLayers; ++layer) effort.layers.push_back(static_cast<gl::Layer>(layer));
   writeImage(file, gl::standPicture(*context_, renderer_, session_.camera, effort), 1.f);
 }

@@ -73,6 +73,7 @@ void Viewer::advanceScript() {
       return fmt::format("{}:{}: {}", options_.script_name, step.line, what);
     };
     try {
+      if (session_.messageIsError()) throw InvalidInput(session_.message());
       if (blocked(step)) return;
       execute(step);
       still_frames_ = 0;
