@@ -12,7 +12,7 @@
 namespace sunfleck::detail {
 namespace {
 
-constexpr std::size_t kShares = 4;  // of the lines, each with sums of its own: a fixed number, for the same bits
+constexpr std::size_t kShares = 2;  // of the lines, each with sums of its own: a fixed number, for the same bits
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 typedef float Four __attribute__((vector_size(16)));

@@ -439,8 +439,7 @@ seed = 1
 # leaf_gloss_roughness = 0.3
 # wood_reflectance = 0.3
 # Several kinds of trees: a [[tree]] with these keys for each, instead of [tree]; names must differ, and of each kind
-# stands one tree at least. Trees of a grid take the kinds in turn along x and along y. trace and voxelize --stand take
-# several kinds, validate and render one alone.
+# stands one tree at least. Trees of a grid take the kinds in turn along x and along y.
 
 # [medium]                    # what fills space, alone or among trees; trace alone takes it. It stands once, and in a
                               # periodic stand once in each period. Without a [tree], no tree stands
@@ -467,13 +466,14 @@ kind = "single"               # single | periodic | grid | positions
 # spacing = [8.0, 8.0]        # ... this far apart; the leaves' box if not given
 # positions = [[0, 0], [5, 1, 30]]   # positions, periodic: x, y and rotation_deg of each tree, and at the end the
                               # name of its kind, as in [5, 1, 30, "cherry"]; without one, trees take the kinds in turn
-# trace takes all stands; validate and render take at most 1024 trees, none rotated, 64 in the space of one
+# trace takes all stands; validate takes at most 1024 trees, render 16384, both at most 64 in the space of one, and at most
+# 64 kinds of trees, each rotation_deg counted as one, since each has maps of its own
 
 [leaf]                        # Lambertian on both sides; reflectance + transmittance at most 1
 reflectance = 0.475           # 0 to 1
 transmittance = 0.475         # 0 to 1
 gloss = 0.0                   # intensity of a glossy reflection on both sides, 0 to 1; the two above are then shares of
-                              # the light it lets in. trace takes it, validate and render do not
+                              # the light it lets in. trace and render take it, validate does not
 gloss_roughness = 0.3         # root mean square slope of its facets, 0.05 to 1; one number
 
 [wood]
@@ -500,7 +500,7 @@ diameter_deg = 0.0            # of its disc, 0.25 to 60; the real one has 0.533;
 # Several suns, at most 4: a [[sun]] with these keys for each, instead of [sun]. The first is the one that lights a
 # preetham sky. render takes several, trace and validate one alone.
 
-[sky]                         # trace alone knows a sky, and a sun of other irradiance or with a disc
+[sky]                         # trace and render know a sky and suns of any irradiance; validate neither
 kind = "none"                 # none | uniform | overcast | preetham | image
 # irradiance = 0.2            # of a horizontal plane, 0 to 1000, by the sun's unit; one number keeps a sky's own colours,
                               # as the mean of its bands. Preetham's sky has its own if not given

@@ -104,11 +104,11 @@ refuses "deep.toml:1" trace deep.toml
 printf '[tree]\nfile = "leaf.obj"\n[ground]\nalbedo = 0.2\n' >ground.toml
 printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "positions"\npositions = [[0, 0, 45]]\n' >rotated.toml
 refuses "ground albedo" validate ground.toml
-refuses "rotated.toml: stand.positions: rotation_deg of tree 1 = 45" validate rotated.toml
+does "wrote" validate rotated.toml --paths 1000 --no-pictures -o report
 printf '[[tree]]\nfile = "leaf.obj"\n[[tree]]\nfile = "leaf.obj"\nname = "dark"\nleaf_reflectance = 0.1\n' >kinds.toml
 refuses "kinds.toml: [stand] has no place for a tree of kind \"dark\"" trace kinds.toml
 printf '[stand]\nkind = "positions"\npositions = [[0, 0, "dark"], [3, 0, "leaf"]]\n' >>kinds.toml
-refuses "number of kinds of trees = 2" validate kinds.toml
+does "2 leaves" validate kinds.toml --paths 1000 --no-pictures -o report
 does "wrote kinds.png" render kinds.toml --size 16 16 -o kinds.png
 refuses "with --stand" voxelize kinds.toml
 refuses "without --stand" voxelize leaf.obj --period 3 3
@@ -326,14 +326,20 @@ refuses "must not be in another file too" merge part1.trace two.trace -o x.trace
 refuses "made with" trace leaf.obj --period 3 3 --paths 2e4 --checkpoint part1.trace
 refuses "must be a trace file" merge garbage.obj -o x.trace
 refuses "named with the extension .trace" trace leaf.obj --checkpoint x.txt
-# Skies: traces tell of their share; models refuse them; a checkpoint of another light is refused.
+# Skies: traces tell of their share; the models' irradiance of leaves refuses them; a checkpoint of another light is refused.
 printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "periodic"\nperiod = [2, 2]\n[sky]\nkind = "overcast"\n' >sky.toml
 does "of the light, the sky's" trace sky.toml --paths 1000 --checkpoint sky.trace
 does '"sky_share": 0.16666' trace sky.toml --paths 1000 --json
 does "HDRF" trace sky.toml --only-brf --brf 0:60:60 --brf-paths 1000
 sed -i 's/overcast/uniform/' sky.toml
 refuses "sky.trace: made with light" trace sky.toml --paths 1000 --checkpoint sky.trace
-refuses "which know the sun as a point" validate sky.toml
+refuses "irradiance of leaves" validate sky.toml
+printf '[tree]\nfile = "leaf.obj"\n[[sun]]\n[[sun]]\nzenith_deg = 30\n' >suns.toml
+refuses "number of suns that shine = 2: must be 1 for Monte Carlo" trace suns.toml
+sed -i 's/= 30/= 95/' suns.toml  # the second has set
+does "leaves" trace suns.toml --paths 1000
+refuses "must come from the sun or from the sky" trace leaf.obj --sun-zenith 95 --paths 1000
+refuses "above the horizon" validate leaf.obj --sun-zenith 95
 does "wrote sky.exr" render sky.toml --size 16 16 --layers all -o sky.exr
 refuses "only .exr keeps layers" render sky.toml --size 16 16 --layers all -o sky.png
 refuses "--mes: must be for light from one direction" trace sky.toml --only-brf --brf 0:60:60 --mes x.mes

@@ -100,29 +100,33 @@ struct Compensation {
 };
 
 gl::DrawnStand standOf(const Scene& scene, const gl::LightMap& map, const Compensation& compensation = {}) {
+  static std::uint64_t revision = 0;  // all is new each time
   gl::DrawnStand stand{.lights = {{.along = map.axes.along}},
                        .kinds = {{.tree = scene.kinds[0], .cells = compensation.cells, .maps = {map}}},
                        .trees = {},
                        .ground_albedo = scene.ground_albedo};
+  stand.kinds[0].maps[0].revision = ++revision;
   for (std::size_t tree = 0; tree < scene.stand.trees.size(); ++tree) {
     gl::DrawnTree& drawn = stand.trees.emplace_back();
     drawn.position = scene.stand.trees[tree].position;
-    if (!compensation.values.empty()) drawn.compensation[0].values = compensation.values[tree];
+    if (!compensation.values.empty()) drawn.compensation[0] = {compensation.values[tree], ++revision};
   }
   return stand;
 }
 
-Image picture(const gl::DrawnStand& stand, const Camera& camera, const gl::PictureEffort& effort) {
-  const gl::Context context;
-  gl::StandRenderer renderer(context);
-  renderer.update(stand);
-  return gl::standPicture(context, renderer, camera, effort);
-}
+// All pictures of a test are drawn by one renderer, whose programs take long to make.
+class R3_TreePicture : public testing::Test {
+ protected:
+  Image picture(const Scene& scene, const gl::LightMap& map, const Camera& camera, Model model,
+                const Compensation& compensation = {}) {
+    renderer_.update(standOf(scene, map, compensation));
+    return gl::standPicture(context_, renderer_, camera, {.model = model});
+  }
 
-Image picture(const Scene& scene, const gl::LightMap& map, const Camera& camera, Model model,
-              const Compensation& compensation = {}) {
-  return picture(standOf(scene, map, compensation), camera, {.model = model});
-}
+ private:
+  gl::Context context_;
+  gl::StandRenderer renderer_{context_};
+};
 
 constexpr Rectangle kWide{{-1.f, -1.f}, {1.f, 1.f}, 1.f};
 
@@ -178,7 +182,7 @@ TEST(Program, NamesTheShaderThatDoesNotCompile) {
 }
 
 // (R3) Check that a leaf that faces the sun sends rho / pi back and tau / pi on, and covers the picture.
-TEST(R3_TreePicture, OfALeafInFullLight) {
+TEST_F(R3_TreePicture, OfALeafInFullLight) {
   const Rectangles leaf({kWide});
   const Scene scene = leaf.scene();
   for (const bool above : {true, false}) {
@@ -195,7 +199,7 @@ TEST(R3_TreePicture, OfALeafInFullLight) {
 }
 
 // (R3) Check that a leaf alone is a slab of thickness 1 to SPP: in direct light, and in the light it sends itself.
-TEST(R3_TreePicture, OfALeafAloneBySpp) {
+TEST_F(R3_TreePicture, OfALeafAloneBySpp) {
   const Rectangles leaf({kWide});
   const Scene scene = leaf.scene();
   const Image image = picture(scene, leaf.map, cameraFrom(90.f), Model::spp);
@@ -207,7 +211,7 @@ TEST(R3_TreePicture, OfALeafAloneBySpp) {
 
 // (R3) Check a leaf in the shadow of another, seen from below: black in direct light alone; lit by the slab's light;
 // by G times that with a G of 1/4 in all cells; and all the same when a second tree of the stand casts the shadow.
-TEST(R3_TreePicture, OfALeafInShadow) {
+TEST_F(R3_TreePicture, OfALeafInShadow) {
   const Rectangles two({{kWide.low, kWide.high, 1.f}, {kWide.low, kWide.high, 0.f}});
   const Rectangles one({{kWide.low, kWide.high, 0.f}});
   Scene trees = one.scene();
@@ -234,7 +238,7 @@ TEST(R3_TreePicture, OfALeafInShadow) {
 }
 
 // (R3) Check that it does not matter where a map puts its origin.
-TEST(R3_TreePicture, FollowsTheMapsOrigin) {
+TEST_F(R3_TreePicture, FollowsTheMapsOrigin) {
   Rectangles half({{{-2.f, -2.f}, {0.f, 2.f}, 1.f}, {{-2.f, -2.f}, {2.f, 2.f}, 0.f}});
   const Camera camera = cameraFrom(-90.f, 0.5f * half.map.pixel_size, 8);
   const Image before = picture(half.scene(), half.map, camera, Model::spp);
@@ -247,7 +251,7 @@ TEST(R3_TreePicture, FollowsTheMapsOrigin) {
 }
 
 // (R3) Check that each tree of a stand reads its own G: 0 in one, 1 in the other, which are far apart.
-TEST(R3_TreePicture, ReadsTheCellsOfEachTree) {
+TEST_F(R3_TreePicture, ReadsTheCellsOfEachTree) {
   const Rectangles two({{kWide.low, kWide.high, 1.f}, {kWide.low, kWide.high, 0.f}});
   Scene scene = two.scene();
   scene.stand.trees.push_back({.position = {10.f, 0.f, 0.f}});
@@ -265,7 +269,7 @@ TEST(R3_TreePicture, ReadsTheCellsOfEachTree) {
 // (R3) Check that the rim of a shadow is as the nearest four pixels of the map say: with a leaf over all x < 0, light
 // grows linearly from 0 at half a map pixel before the rim to 1 half a pixel beyond it. Rows of 8 pixels span it, each
 // the mean of two samples, which a linear function's mean over the pixel equals.
-TEST(R3_TreePicture, SmoothsTheRimOfAShadow) {
+TEST_F(R3_TreePicture, SmoothsTheRimOfAShadow) {
   const Rectangles half({{{-2.f, -2.f}, {0.f, 2.f}, 1.f}, {{-2.f, -2.f}, {2.f, 2.f}, 0.f}});
   const Scene scene = half.scene();
   const float map_pixel = half.map.pixel_size;
@@ -280,7 +284,7 @@ TEST(R3_TreePicture, SmoothsTheRimOfAShadow) {
 
 // (R3) Check that wood in full light sends back its reflectance / pi and nothing on, and that it shades what is below
 // it.
-TEST(R3_TreePicture, OfWood) {
+TEST_F(R3_TreePicture, OfWood) {
   const Rectangles tree({{kWide.low, kWide.high, 1.f, true}, {kWide.low, kWide.high, 0.f}});
   Scene scene = tree.scene();
   scene.kinds[0].wood_reflectance = {0.2f, 0.3f, 0.4f};
@@ -301,7 +305,7 @@ glm::ivec2 pixelOf(const Camera& camera, glm::vec3 point) {
 
 // (R3) Check the ground below a leaf on a thin post: lit by albedo / pi beside the shadow, black in it by direct light
 // alone, lit by what the slab lets through by SPP, and black sky beyond its rim.
-TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
+TEST_F(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
   const Rectangles tree({{kWide.low, kWide.high, 1.f}, {{1.5f, 1.5f}, {1.51f, 1.51f}, 0.f, true}});
   Scene scene = tree.scene();
   scene.ground_albedo = {0.1f, 0.2f, 0.3f};
@@ -334,7 +338,7 @@ TEST(R3_TreePicture, OfTheGroundAndAShadowOnIt) {
 
 // (R3) Check the whole way from a mesh and its opacity map: the shadow of a leaf 2 m up falls 2 m aside when the sun
 // stands at 45 degrees, at whatever azimuth; there SPPG with G = 1/4 sends a quarter of the slab's light.
-TEST(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
+TEST_F(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
   for (const float azimuth : {0.f, 2.5f}) {
     const glm::vec2 aside(-2.f * std::cos(azimuth), -2.f * std::sin(azimuth));
     const glm::vec2 half(0.6f);
@@ -362,7 +366,7 @@ TEST(R3_TreePicture, ReadsADeepOpacityMapAlongALowSun) {
 }
 
 // (R3) Check that the same picture twice is the same bits.
-TEST(R3_TreePicture, IsDeterministic) {
+TEST_F(R3_TreePicture, IsDeterministic) {
   const Rectangles tree({kWide, {{-0.5f, -0.5f}, {1.5f, 1.f}, 0.5f}, {{-1.5f, -1.f}, {0.3f, 1.5f}, 0.f}});
   Scene scene = tree.scene();
   scene.ground_albedo = glm::vec3(0.2f);
@@ -373,7 +377,7 @@ TEST(R3_TreePicture, IsDeterministic) {
 }
 
 // (R3) Check that a picture of several tiles has no seam: a leaf over its left half covers just that.
-TEST(R3_TreePicture, HasNoSeams) {
+TEST_F(R3_TreePicture, HasNoSeams) {
   const Rectangles leaf({kWide});
   Camera camera = cameraFrom(90.f, 0.5f, 1100);
   camera.height = 2;
@@ -383,7 +387,7 @@ TEST(R3_TreePicture, HasNoSeams) {
 }
 
 // (R3) Check that a camera that sees nothing is refused.
-TEST(R3_TreePicture, RefusesACameraThatSeesNothing) {
+TEST_F(R3_TreePicture, RefusesACameraThatSeesNothing) {
   const Rectangles leaf({kWide});
   Camera camera = cameraFrom(90.f);
   camera.half_width = 0.f;

@@ -188,8 +188,7 @@ TEST_F(SceneFile, KnowsBuiltinScenes) {
 }
 
 // Check the geometry of a stand of several trees: a tree beside another loses G on the far side only, so that two trees
-// far apart have the G of a lone one, and two that touch have more of it; and that the irradiance of leaves is refused
-// for rotated trees and several kinds.
+// far apart have the G of a lone one, and two that touch have more of it.
 TEST_F(SceneFile, StandsOfSeveralTreesShareTheirLight) {
   Scene scene = readScene("slab");
   scene.stand = Stand{};
@@ -205,23 +204,6 @@ TEST_F(SceneFile, StandsOfSeveralTreesShareTheirLight) {
   EXPECT_DOUBLE_EQ(mean(0), lone);
   scene.stand.trees[1].position.x = 2.f;
   EXPECT_GT(mean(0), lone);
-  const auto refused = [&] {
-    try {
-      requireModelled(scene);
-    } catch (const InvalidInput& e) {
-      return std::string(e.what());
-    }
-    return std::string("accepted");
-  };
-  scene.stand.trees[1].rotation = 0.5235988f;
-  EXPECT_EQ(refused(),
-            "slab: stand.positions: rotation_deg of tree 2 = 30: must be 0 for the models' irradiance of leaves "
-            "(trace and render take any)");
-  scene.kinds.push_back(scene.kinds[0]);
-  EXPECT_EQ(
-      refused(),
-      "slab: number of kinds of trees = 2: must be 1 for the models' irradiance of leaves (trace, render and voxelize "
-      "--stand take any)");
 }
 
 // Check that trees of a periodic stand that are written a whole number of periods apart come together, so that the

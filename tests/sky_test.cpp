@@ -250,8 +250,7 @@ TEST(R28_SkyShares, OfAnEvenSkyAreEven) {
   const std::vector<glm::vec3> shares = skyShares(uniformSky({kPi, 2. * kPi, 0.}), directions);
   for (std::size_t i = 0; i < directions.size(); ++i)
     for (int band = 0; band < 3; ++band)
-      EXPECT_NEAR(shares[i][band],
-                  directions[i].z > 0.f ? std::array{1.f, 2.f, 0.f}[static_cast<std::size_t>(band)] : 0.f, 1e-6f);
+      EXPECT_NEAR(shares[i][band], directions[i].z > 0.f ? glm::vec3(1.f, 2.f, 0.f)[band] : 0.f, 1e-6f);
 }
 
 // Check that a spot much smaller than what a direction stands for is seen by that direction with all of its light, and

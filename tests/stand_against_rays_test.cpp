@@ -219,40 +219,83 @@ TEST(D5_StandAgainstRays, CompensationOfCells) {
   }
 }
 
-// (D10) Check the sky's light against Monte Carlo, for an even sky above and dark ground. A leaf in a field of mean
-// radiance J receives 2 pi J on both sides together, of whatever direction it is; a sky of radiance 1 is so many suns,
-// each of irradiance 2 pi over their number. So J is the mean of what leaves receive of one sun each. The mean over
-// leaves is off by 0.1 % for the random crown and 2 % for the cherry, whose leaves stand in clumps; Monte Carlo's own
-// error is below 0.3 %.
-TEST(D10_StandAgainstRays, SkyLightOfLeaves) {
-  for (const Mesh& mesh : {crown(9000), grown("cherry")}) {
-    Pair pair({mesh}, {{0, {0.f, 0.f, 0.f}}});
-    const std::vector<Direction> directions = pair.stand.sampleDirections();
-    std::vector<glm::vec3> sky;
-    double by_suns = 0.;
-    std::vector<double> areas = leafAreas(*mesh);
-    double area = 0.;
-    for (const double of_leaf : areas) area += of_leaf;
-    for (const Direction& direction : directions) {
-      sky.emplace_back(direction.z > 0.f ? 1.f : 0.f);
-      if (direction.z <= 0.f) continue;
-      const ForwardResult traced = traceForward(pair.rays[0], {.sun = -direction}, {.paths = 20000});
-      for (std::size_t leaf = 0; leaf < areas.size(); ++leaf)
-        by_suns += traced.leaf_irradiance[leaf] * areas[leaf] / area;
-    }
-    by_suns /= static_cast<double>(directions.size() / 2);
-    pair.stand.setSky(sky);
-    const std::vector<std::size_t> lone{0};
-    pair.stand.prepareSkyLight(lone);
-    const CellGrid& cells = pair.stand.cells(0);
-    std::vector<float> light;
-    for (const glm::vec3& of_cell : pair.stand.skyLight(0)) light.push_back(of_cell.x);
-    const std::vector<float> everywhere = spread<float>(cells, light);
-    const std::vector<glm::vec3> centres = leafCentres(*mesh);
-    double mean = 0.;
+// Light of an even sky in the cells of a lone tree's leaves over what Monte Carlo finds, above dark ground. A leaf in a
+// field of mean radiance J receives 2 pi J on both sides together, of whatever direction it is; a sky of radiance 1 is
+// so many suns, each of irradiance 2 pi over their number. So J is the mean of what leaves receive of one sun each.
+double skyLightOverTraced(const Mesh& mesh) {
+  FoliageStand stand;
+  stand.addPrototype(mesh);
+  stand.add(0, {0.f, 0.f, 0.f});
+  const RayScene rays(*mesh, {}, true);
+  const std::vector<Direction> directions = stand.sampleDirections();
+  std::vector<glm::vec3> sky;
+  double by_suns = 0.;
+  const std::vector<double> areas = leafAreas(*mesh);
+  const double area = leafArea(*mesh);
+  for (const Direction& direction : directions) {
+    sky.emplace_back(direction.z > 0.f ? 1.f : 0.f);
+    if (direction.z <= 0.f) continue;
+    const ForwardResult traced = traceForward(rays, {.sun = -direction}, {.paths = 20000});
     for (std::size_t leaf = 0; leaf < areas.size(); ++leaf)
-      mean += double{interpolate(cells, everywhere, centres[leaf])} * areas[leaf] / area;
-    EXPECT_NEAR(mean / by_suns, 1., 0.03);
+      by_suns += traced.leaf_irradiance[leaf] * areas[leaf] / area;
+  }
+  by_suns /= static_cast<double>(directions.size() / 2);
+  stand.setSky(sky);
+  const std::vector<std::size_t> lone{0};
+  stand.prepareSkyLight(lone);
+  const CellGrid& cells = stand.cells(0);
+  std::vector<float> light;
+  for (const glm::vec3& of_cell : stand.skyLight(0)) light.push_back(of_cell.x);
+  const std::vector<float> everywhere = spread<float>(cells, light);
+  const std::vector<glm::vec3> centres = leafCentres(*mesh);
+  double mean = 0.;
+  for (std::size_t leaf = 0; leaf < areas.size(); ++leaf)
+    mean += double{interpolate(cells, everywhere, centres[leaf])} * areas[leaf] / area;
+  return mean / by_suns;
+}
+
+Mesh withoutWood(const Mesh& mesh) {
+  auto leaves = std::make_shared<TreeMesh>(*mesh);
+  leaves->wood_triangles.clear();
+  return leaves;
+}
+
+// (D10) Check the sky's light against Monte Carlo. The mean over leaves is off by 0.1 % for the random crown and 2 %
+// for the cherry, whose leaves stand in clumps; Monte Carlo's own error is below 0.3 %.
+TEST(D10_StandAgainstRays, SkyLightOfLeaves) {
+  for (const Mesh& mesh : {crown(9000), withoutWood(grown("cherry"))}) EXPECT_NEAR(skyLightOverTraced(mesh), 1., 0.03);
+}
+
+// (D13) Check it of a tree whose wood takes a seventh of it: 3 % off by measurement, as wood hides in the mean and not
+// where the leaves are.
+TEST(D13_StandAgainstRays, SkyLightOfLeavesBehindWood) {
+  EXPECT_NEAR(skyLightOverTraced(grown("cherry")), 1., 0.045);
+}
+
+// (D12) Check the light that reaches the ground under crowns without end, a width and two apart, against Monte Carlo,
+// whose standard error is .003. Under a closed canopy .015 more arrives than should, between crowns two widths apart
+// .002 less.
+TEST(D12_StandAgainstRays, LightOnTheGround) {
+  const Mesh mesh = crown(3000);
+  for (const float period : {2.f, 4.f}) {
+    FoliageStand stand;
+    stand.addPrototype(mesh);
+    stand.add(0, {0.f, 0.f, 0.f});
+    stand.setPeriod(glm::vec2(period));
+    const std::vector<Direction> suns{sunlight(0.f, 0.f), sunlight(0.9f, 0.4f)};
+    stand.setLights(suns);
+    stand.setGround({.low = leafBounds(*mesh).low,
+                     .height = leafBounds(*mesh).low.z,
+                     .cell_size = glm::vec2(period / 32.f),
+                     .size = {32, 32}});
+    stand.prepareGround();
+    const RayScene rays(*mesh, {.period = glm::vec2(period)}, false);
+    for (std::size_t light = 0; light < suns.size(); ++light) {
+      const ForwardResult traced = traceForward(rays, {.sun = suns[light]}, {.paths = 40000});
+      double mean = 0.;
+      for (const glm::vec3& share : stand.groundShare(light)) mean += double{share.x} / 1024.;
+      EXPECT_NEAR(mean, traced.arriving_ground.value, 0.02) << period << " " << light;
+    }
   }
 }
 

@@ -18,7 +18,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 sky_azimuth;   // x: where the sky's first column begins [rad]
   vec4 ground_cells;  // xy: corner of the cells in which the ground's skylight is told [m]; zw: 1 / extent [1/m]
   vec4 ground_open;   // rgb: irradiance of open ground by the sky [1]; w: 1 where cells are told
-  uvec4 counts;       // x: lights; y: trees of the stand; z: light whose foliage is told in layers; w: 1 where cells have light
+  uvec4 counts;       // x: lights; y: trees of the stand; z: light told in layers; w: 1 where cells have light
   uvec4 cells;        // xyz: cells of a block, one for each tree; w: blocks along x
   uvec4 blocks;       // x: blocks along y; y, z: rows and columns of the sky, 0: none
   LightFrame light_frames[4];

@@ -123,12 +123,13 @@ vec3 skyOnGround(vec2 here) {
   return told ? textureLod(ground_sky, at, 0.0).rgb : ground_open.rgb;
 }
 
-// (R3) The ground: a Lambertian disc that fades towards its rim. Gives its coverage.
+// (R3) The ground: a Lambertian disc that fades towards its rim; under a sky it goes on to the horizon. Gives its
+// coverage.
 float shadeGround(Sight look) {
   if (ground_albedo.w == 0.0 || look.along.z >= 0.0) return 0.0;
   float away = (ground.z - look.from.z) / look.along.z;
   vec3 place = look.from + away * look.along;
-  float from_centre = distance(place.xy, ground.xy) / ground.w;
+  float from_centre = blocks.y > 0u ? 0.0 : distance(place.xy, ground.xy) / ground.w;
   if (from_centre >= 1.0 || (eye.w > 0.0 && away <= 0.0)) return 0.0;
   vec3 here = place;
   if (period.x > 0.0) here.xy -= floor((here.xy - period.zw) / period.xy) * period.xy;
@@ -162,7 +163,7 @@ vec3 skyTowards(vec3 to_sky) {
 
 void main() {
 #ifdef LAYERS
-  geometry = vec4(0.0, 0.0, 0.0, 1.0 / 0.0);
+  geometry = vec4(0.0, 0.0, 0.0, uintBitsToFloat(0x7f800000u));
   foliage_of_light = vec4(0.0);
   ids = uvec4(kNone, kNone, kNone, kNoLeaf);
 #endif

@@ -85,7 +85,7 @@ struct StandRenderer::Programs {
   const ShadingBuffers& buffersOf(Model model, const StandData& stand) {
     auto found = buffers.find(model);
     if (found == buffers.end()) {
-      update(data[model], model, stand.treeKinds(), shadingLights(stand.lights()), exact);
+      sunfleck::shading::update(data[model], model, stand.treeKinds(), shadingLights(stand.lights()), exact);
       found = buffers.emplace(model, ShadingBuffers(data[model])).first;
     }
     return found->second;
@@ -169,7 +169,8 @@ std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const 
     const float away = (ground.centre.z - look.from.z) / look.along.z;
     const glm::vec3 there = look.from + away * look.along;
     const bool seen = data_.frame().ground_albedo.w > 0.f && look.along.z < 0.f &&
-                      (away > 0.f || !view.camera.perspective()) && glm::distance(there, ground.centre) < ground.radius;
+                      (away > 0.f || !view.camera.perspective()) &&
+                      (data_.frame().blocks.y > 0u || glm::distance(there, ground.centre) < ground.radius);
     return seen ? std::optional<Pick>({.tree = {}, .leaf = {}, .place = there}) : std::nullopt;
   }
   const StandData::Seen seen = data_.seen(id.x);
