@@ -276,10 +276,13 @@ void RayScene::Geometry::blocked(std::span<const glm::vec3> from, const glm::vec
   }
   alignas(64) std::array<int, kPacket> valid{};
   RTCRay16 rays;
+  bool asked = false;
   for (std::size_t i = 0; i < from.size(); ++i) {
     valid[i] = is_blocked[i] ? 0 : -1;
+    asked = asked || !is_blocked[i];
     set(rays, i, from[i], direction, kInfinity);
   }
+  if (!asked) return;  // Embree 3.13 may never come back from a packet of which no ray counts
   anyHits(valid.data(), scenes.root(), rays);
   for (std::size_t i = 0; i < from.size(); ++i) is_blocked[i] = is_blocked[i] || rays.tfar[i] < 0.f;
 }

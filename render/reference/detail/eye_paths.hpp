@@ -51,7 +51,7 @@ class EyePaths {
     const std::size_t count = from.size();
     std::array<float, kPacket> to_ground;
     std::array<Hit, kPacket> hits;
-    std::array<glm::vec3, kPacket> lit;  // where light from the sun would come in
+    std::array<glm::vec3, kPacket> lit{};  // where light from the sun would come in
     std::array<bool, kPacket> dark;
     for (std::size_t i = 0; i < count; ++i) to_ground[i] = toGround(from[i], sights[i]);
     if (scene_.media.empty())
