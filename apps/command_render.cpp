@@ -129,7 +129,8 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
   const gl::PictureEffort effort{.model = *modelNamed(options.model),
                                  .samples = options.samples,
                                  .piece_pixels = options.detail,
-                                 .layers = layersOf(options)};
+                                 .layers = layersOf(options),
+                                 .exact = exactPowerTable};
   Scene scene = readScene(options.scene);
   apply(options.camera, scene);
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
@@ -180,9 +181,8 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
   command->add_option("-o,--output", render->output, "Picture to write: .exr (radiances) or .png")->required();
   command
       ->add_option("--model", render->model,
-                   "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); sppr, nstreamg, "
-                   "pp: better "
-                   "slabs with G-factor, refined, by two streams, exact by a table")
+                   "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); sppr: that slab "
+                   "refined, with G; nstreamg: a better slab, with G; pp: the exact slab, with G")
       ->check([](const std::string& name) {
         return modelNamed(name) ? std::string() : "model \"" + name + "\": must be one of " + modelNames();
       });

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/gl/stand_renderer.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 using namespace sunfleck;
 
-constexpr std::array kTimed{Model::ss, Model::sppg, Model::nstreamg};
+constexpr std::array kTimed{Model::ss, Model::spp, Model::sppg, Model::nstreamg, Model::pp};
 constexpr float kDetail = 6.f;  // pixels that enlarged leaves cover at most
 
 // A stand that is ready to be drawn, from somewhat above. G is what it is.
@@ -24,7 +25,7 @@ struct Ready {
   Scene scene;
   StandGeometry geometry;
   std::unique_ptr<gl::Context> context = std::make_unique<gl::Context>();
-  std::unique_ptr<gl::StandRenderer> renderer = std::make_unique<gl::StandRenderer>(*context);
+  std::unique_ptr<gl::StandRenderer> renderer = std::make_unique<gl::StandRenderer>(*context, exactPowerTable);
   gl::View view;
 
   explicit Ready(const std::string& name) : scene(readScene(name)) {
@@ -106,14 +107,19 @@ void frame(benchmark::State& state, int rows, float piece_pixels) {
       if (kTimed[i] == Model::sppg) state.SetIterationTime(cost.visible_seconds + cost.shading_seconds);
     }
   const auto milliseconds = [&](double sum) { return 1e3 * sum / static_cast<double>(state.iterations()); };
-  const Times &ss = times[0], &sppg = times[1], &nstreamg = times[2];
+  const auto of = [&](Model model) {
+    return times[static_cast<std::size_t>(std::ranges::find(kTimed, model) - kTimed.begin())];
+  };
+  const Times ss = of(Model::ss), sppg = of(Model::sppg), nstreamg = of(Model::nstreamg), pp = of(Model::pp);
   state.counters["visible_ms"] = milliseconds(sppg.visible);
   state.counters["cpu_ms"] = milliseconds(sppg.cpu);
   state.counters["ss_cpu_ms"] = milliseconds(ss.cpu);
   state.counters["sppg/ss"] = sppg.all() / ss.all();
   state.counters["nstreamg/ss"] = nstreamg.all() / ss.all();
+  state.counters["spp/ss_cpu"] = of(Model::spp).cpu / ss.cpu;
   state.counters["sppg/ss_cpu"] = sppg.cpu / ss.cpu;
   state.counters["nstreamg/ss_cpu"] = nstreamg.cpu / ss.cpu;
+  state.counters["pp/ss_cpu"] = pp.cpu / ss.cpu;
   state.counters["triangles"] = static_cast<double>(cost.triangles);
   state.counters["calls"] = static_cast<double>(cost.draw_calls);
   state.SetLabel(ready.context->renderer());

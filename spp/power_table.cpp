@@ -1,5 +1,6 @@
 #include "spp/power_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -16,7 +17,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Where tablePlace() finds a node of a slab.
 double nodeDepth(int node, double thickness) {
   const double part = static_cast<double>(node) / (kTableDepths - 1), rest = 1. - part;
-  const double t = part * part / (part * part + rest * rest);  // A^2 / (A^2 + B^2)
+  const double t = part * part / (part * part + rest * rest);                       // A^2 / (A^2 + B^2)
   if (thickness == kInfinite) return t < 0.5 ? 8. * t / (1. - 2. * t) : kInfinite;  // B^2 = 8
   if (t > 0.5) return thickness - nodeDepth(kTableDepths - 1 - node, thickness);
   // A^2 (1 - t) = B^2 t is q z^2 - p z + t w = 0.
@@ -54,6 +55,23 @@ BeamInMedium sphericalLeaves(const LeafOptics& optics) {
                          .reflectance = double{optics.reflectance},
                          .transmittance = double{optics.transmittance}},
           1.};
+}
+
+PowerTable streamPowerTable(const LeafOptics& optics) {
+  constexpr double kDeep = 1e6;  // crossings in a slab without end, where no light is left but that of albedo 1
+  const StreamConstants constants = nStreamConstants(sphericalLeaves(optics), 2, 1);
+  const double per_crossing = 1. / constants.beam_projection;  // leaf area index
+  PowerTable table;
+  table.nodes.assign(std::size_t{kTableDepths}, SlabPowers{0.f, 0.f});  // no slab
+  for (const double thickness : tableThicknesses()) {
+    if (thickness == 0.) continue;
+    const StreamSlab<double> slab(constants, thickness * per_crossing);
+    for (const double depth : tableDepths(thickness)) {
+      const SlabLight<double> light = slab.light(std::min(depth, kDeep) * per_crossing);
+      table.nodes.push_back({static_cast<float>(light.power_down - light.direct), static_cast<float>(light.power_up)});
+    }
+  }
+  return table;
 }
 
 PowerTable refinedPowerTable(const LeafOptics& optics) {

@@ -36,6 +36,9 @@ BeamInMedium sphericalLeaves(const LeafOptics& optics);
 // A table for a kind of leaves: refinedPowerTable, or of the exact solution that of render/compare/exact_powers.hpp.
 using PowerTableOf = std::function<PowerTable(const LeafOptics&)>;
 
+// Powers of (S13) with two streams in each half.
+PowerTable streamPowerTable(const LeafOptics& optics);
+
 // (S15) Powers of SPP refined: those of the radiance that the light scattered by SPP's field makes (S10).
 PowerTable refinedPowerTable(const LeafOptics& optics);
 

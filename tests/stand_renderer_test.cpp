@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -12,7 +13,9 @@
 #include <set>
 
 #include "plants/random_leaves.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "render/gl/stand_picture.hpp"
+#include "render/shading/fragment_shading.hpp"
 #include "sky/sky_models.hpp"
 
 namespace {
@@ -79,7 +82,7 @@ class Drawing {
     return gl::standPicture(context, renderer, camera, effort);
   }
   gl::Context context;
-  gl::StandRenderer renderer{context};
+  gl::StandRenderer renderer{context, exactPowerTable};
 };
 
 const std::vector<gl::Layer> kAll(gl::kLayersBesideTotal.begin(), gl::kLayersBesideTotal.end());
@@ -114,6 +117,50 @@ TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
       }
     EXPECT_EQ(trees.size(), 6u);  // five trees and none
     EXPECT_EQ(kinds, (std::set<float>{-1.f, 0.f, 1.f}));
+  }
+}
+
+// Check every model's picture pixel by pixel against C++, which shades the same fragments as the layers tell them: of
+// two kinds of trees, one under a gloss, whose lobe of roughness 0.3 magnifies roundings of directions tenfold.
+TEST(R27_StandRenderer, ShadesAsCppDoes) {
+  Woods woods;
+  woods.scene.suns.resize(1);
+  for (LeafOptics& leaf : woods.scene.kinds[1].leaf) leaf.gloss = 0.4f;
+  Drawing drawing(woods.stand());
+  const Camera camera = woods.camera();
+  const glm::vec3 to_eye = -viewAxes(camera).along;
+  for (const Model model : kModels) {
+    const Image image = drawing.picture(camera, {.model = model, .samples = 1, .layers = kAll});
+    shading::ShadingData data;
+    const std::array suns{shading::ShadingLight{.travel = glm::vec4(woods.scene.sun().light(), 0.f),
+                                                .irradiance = glm::vec4(woods.scene.sun().irradiance, 0.f)}};
+    update(data, model, woods.scene.kinds, suns, exactPowerTable);
+    const shading::FragmentShading shading(model, data);
+    int leaves = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const auto at = [&](const char* name) { return value(image, x, y, name); };
+        if (at("id.leaf") < 0.f) continue;
+        ++leaves;
+        const glm::vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
+        const shading::Surface surface =
+            shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), 0, 0, normal, to_eye);
+        const float before = at("foliage.before"), beyond = at("foliage.beyond");
+        const shading::Shaded shaded = shading.shadeByLight(surface,
+                                                            {.foliage = {before, beyond, at("foliage.visible")},
+                                                             .thickness = before + beyond + 1.f,
+                                                             .compensation = at("foliage.G")},
+                                                            0);
+        const std::array bands{"R", "G", "B"};
+        for (int band = 0; band < 3; ++band) {
+          const std::string name = bands[static_cast<std::size_t>(band)];
+          ASSERT_NEAR(at(("direct." + name).c_str()), shaded.direct[band],
+                      kShading * (1.f + 10.f * shaded.direct[band]));
+          ASSERT_NEAR(at(("multiple." + name).c_str()), shaded.multiple[band],
+                      kShading * (1.f + shaded.multiple[band]));
+        }
+      }
+    EXPECT_GT(leaves, 1000);
   }
 }
 

@@ -20,7 +20,7 @@ using spp::TablePlace, spp::tablePlace, spp::tableValue;
 using std::abs, std::erfc, std::exp, std::sqrt;
 
 // The text shared with GLSL as members of a class: its functions read `kinds`, `lights` and model_constants.
-class FragmentShading::Text : public spp::StreamFormulas<float, 2> {
+class FragmentShading::Text : public spp::StreamFormulas<float> {
  public:
   explicit Text(const ShadingData& data) : kinds(data.kinds), lights(data.lights), gloss_tables(data.gloss_tables) {}
   virtual ~Text() = default;
@@ -63,12 +63,6 @@ struct FragmentShading::Texts {
 #include "render/shading/shade.glsl"
 #include "render/shading/sppg.glsl"
   };
-  struct NStreamG final : Text {
-    using Text::Text;
-#include "render/shading/nstreamg.glsl"
-#include "render/shading/shade.glsl"
-  };
-
   struct Tables final : Text {
     using Text::Text;
 #include "render/shading/shade.glsl"
@@ -83,9 +77,8 @@ struct FragmentShading::Texts {
         return std::make_unique<Spp>(data);
       case Model::sppg:
         return std::make_unique<Sppg>(data);
-      case Model::nstreamg:
-        return std::make_unique<NStreamG>(data);
       case Model::sppr:
+      case Model::nstreamg:
       case Model::pp:
         return std::make_unique<Tables>(data);
     }

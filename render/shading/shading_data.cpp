@@ -17,7 +17,8 @@ std::vector<float> glossTablesOf(std::span<const BandOptics> leaves) {
   std::vector<float> tables;
   if (std::ranges::none_of(leaves, glossy)) return tables;
   for (const BandOptics& leaf : leaves) {
-    const std::vector<float> table = glossTables(leaf[0].gloss_roughness);
+    const std::vector<float> table =
+        glossy(leaf) ? glossTables(leaf[0].gloss_roughness) : std::vector<float>(kGlossTableNumbers);
     tables.insert(tables.end(), table.begin(), table.end());
   }
   return tables;

@@ -6,9 +6,7 @@
 #include <stdexcept>
 
 #include "core/leaf_optics.hpp"
-#include "spp/mode_numbers.hpp"
 #include "spp/slab.hpp"
-#include "spp/stream_constants.hpp"
 
 namespace sunfleck::shading {
 namespace {
@@ -33,22 +31,6 @@ std::vector<float> sppNumbers(std::span<const TreeKind> kinds, const spp::PowerT
   });
 }
 
-constexpr int kStreams = 2;  // STREAMS of the text
-
-// Leaves of all directions alike, lit along the slab's normal.
-std::vector<float> streamNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
-  return ofLeaves(kinds, [](const LeafOptics& leaf, std::vector<float>& numbers) {
-    const spp::StreamConstants constants = spp::nStreamConstants(spp::sphericalLeaves(leaf), kStreams, 1);
-    numbers.push_back(static_cast<float>(constants.depth_scale / constants.beam_projection));
-    numbers.push_back(static_cast<float>(constants.beam_rate));
-    const std::vector<float> modes = spp::modeNumbers<float>(constants);
-    numbers.insert(numbers.end(), modes.begin(), modes.end());
-    const spp::PowerWeights weights = spp::powerWeights(constants);
-    for (const auto* of_modes : {&weights.power_sum, &weights.power_difference})
-      for (const double weight : *of_modes) numbers.push_back(static_cast<float>(weight));
-  });
-}
-
 // The nodes' powers band by band within a node. Bands that are alike share their table.
 std::vector<float> tableNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf& table_of) {
   std::vector<float> numbers;
@@ -66,6 +48,10 @@ std::vector<float> tableNumbers(std::span<const TreeKind> kinds, const spp::Powe
 std::vector<float> refinedNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
   return tableNumbers(kinds, spp::refinedPowerTable);
 }
+// On the processor; a fragment that solves the streams' slab itself costs twice as much as all else of it.
+std::vector<float> streamNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf&) {
+  return tableNumbers(kinds, spp::streamPowerTable);
+}
 std::vector<float> exactNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf& exact) {
   if (!exact) throw std::invalid_argument("the model pp needs the exact solution");
   return tableNumbers(kinds, exact);
@@ -76,7 +62,7 @@ constexpr std::array kShadingModels{
     ShadingModel{Model::spp, "render/shading/spp.glsl", sppNumbers},
     ShadingModel{Model::sppg, "render/shading/sppg.glsl", sppNumbers},
     ShadingModel{Model::sppr, "render/shading/tables.glsl", refinedNumbers},
-    ShadingModel{Model::nstreamg, "render/shading/nstreamg.glsl", streamNumbers},
+    ShadingModel{Model::nstreamg, "render/shading/tables.glsl", streamNumbers},
     ShadingModel{Model::pp, "render/shading/tables.glsl", exactNumbers},
 };
 
