@@ -140,7 +140,7 @@ bool Viewer::frame() {
   }
   still_frames_ = still() ? still_frames_ + 1 : 0;
   serve(requests_);
-  ++frame_count_;
+  if (session_.loaded()) ++frame_count_;
   if (frames_left_ > 0) --frames_left_;
   if (options_.frames && frame_count_ >= *options_.frames) return false;
   return !(options_.ends && next_step_ == options_.script.size() && frames_left_ == 0 && synthetic_.empty());
