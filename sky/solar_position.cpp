@@ -82,7 +82,7 @@ void moveDay(UtcMoment& moment, int by) {
   }
 }
 
-// Days since the noon that began the year 2000 (J2000); Meeus 1998, Eq. 7.1.
+// Days since the noon that began the year 2000; Meeus 1998, Eq. 7.1.
 double daysSince2000(const UtcMoment& moment) {
   const int year = moment.month <= 2 ? moment.year - 1 : moment.year;
   const int month = moment.month <= 2 ? moment.month + 12 : moment.month;
