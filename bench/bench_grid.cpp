@@ -105,7 +105,8 @@ void opacityMaps(benchmark::State& state) {
     if (!holdsProjectedArea(DeepOpacityMap(mesh, along, resolution, DeepOpacityMap::Wood::none), mesh))
       return state.SkipWithError("a map does not hold the area of the leaves");
   for (auto _ : state)
-    for (const Direction& along : directions) benchmark::DoNotOptimize(DeepOpacityMap(mesh, along, resolution, DeepOpacityMap::Wood::none));
+    for (const Direction& along : directions)
+      benchmark::DoNotOptimize(DeepOpacityMap(mesh, along, resolution, DeepOpacityMap::Wood::none));
   state.SetItemsProcessed(state.iterations() * kDirections / 2);
 }
 BENCHMARK(opacityMaps)->ArgName("pixels")->Arg(128)->Arg(256)->UseRealTime()->Unit(benchmark::kMillisecond);

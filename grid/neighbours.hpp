@@ -20,7 +20,8 @@ inline constexpr int kMostOverlap = 8;
 glm::ivec2 periodsAround(const Stand& stand, const Bounds& box);
 
 // Throws InvalidInput when more than kMostOverlap^2 trees of the stand stand on the ground of one: within half of the
-// width and depth of its kind's box, or of their own if that is smaller, copies counted. Each would be summed into each.
+// width and depth of its kind's box, or of their own if that is smaller, copies counted. Each would be summed into
+// each.
 //   kinds  boxes of the kinds of trees
 void requireApart(const Stand& stand, std::span<const Bounds> kinds);
 

@@ -158,9 +158,9 @@ TEST(Report, HoldsWhatScriptsAndPeopleRelyOn) {
   for (const char* key : {"name", "leaves", "leaf_area_m2", "mean_depth", "mean_thickness", "albedo", "sun_zenith_deg"})
     EXPECT_TRUE(json["scene"].contains(key)) << key;
   for (const char* key : {"paths", "seconds", "rms_noise"}) EXPECT_TRUE(json["reference"][key].is_number()) << key;
-  ASSERT_EQ(json["models"].size(), 3u);
-  EXPECT_EQ(json["models"][0]["name"], "ss");
-  EXPECT_EQ(json["models"][2]["name"], "sppg");
+  ASSERT_EQ(json["models"].size(), kModels.size());
+  const std::array names{"ss", "spp", "sppg", "sppr", "nstreamg", "pp"};
+  for (std::size_t i = 0; i < kModels.size(); ++i) EXPECT_EQ(json["models"][i]["name"], names[i]);
   for (const char* key : {"rms_category", "rms_weighted", "rms_leaf", "prepare_seconds", "shade_seconds"})
     EXPECT_TRUE(json["periodic"]["models"][1][key].is_number()) << key;
 

@@ -155,7 +155,6 @@ TEST(R26_GlossTables, CountAllLightOnce) {
   }
 }
 
-
 TEST(R27_FragmentShading, ByStreamsIsThatOfTheSlab) {
   const LeafOptics leaf{.reflectance = 0.6f, .transmittance = 0.3f};
   TreeKind kind;

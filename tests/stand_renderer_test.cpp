@@ -96,8 +96,8 @@ float value(const Image& image, int x, int y, const std::string& name) {
   return image.values[image.at(x, y, channel(image, name))];
 }
 
-// (R24) Check that the parts of the light add up to the picture, by models that tell less and more, with two suns, a sky and two kinds of
-// trees, whose ids all appear; the sum of four parts is off by their roundings.
+// (R24) Check that the parts of the light add up to the picture, by models that tell less and more, with two suns, a
+// sky and two kinds of trees, whose ids all appear; the sum of four parts is off by their roundings.
 TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
   Woods woods;
   Drawing drawing(woods.stand());

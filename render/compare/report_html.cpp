@@ -111,10 +111,9 @@ std::string facts(const Validation& v) {
       "categories hold at least 5 leaves and "
       "leave out "
       "{} leaves. Reference: {:.3g} million paths of light, seed {}{}.</p>\n",
-      escapeMarkup(kindOf(v.scene) + " (" + sourceOf(v.scene) + ")"), v.leaves,
-      v.leaf_triangles, v.leaf_area, v.albedo(),
-      v.scene.sun().zenith * 180.f / std::numbers::pi_v<float>, v.mean_depth, v.mean_thickness, v.categories.size(),
-      v.leaves_left_out, static_cast<double>(v.reference.paths) * 1e-6, v.effort.trace.seed,
+      escapeMarkup(kindOf(v.scene) + " (" + sourceOf(v.scene) + ")"), v.leaves, v.leaf_triangles, v.leaf_area,
+      v.albedo(), v.scene.sun().zenith * 180.f / std::numbers::pi_v<float>, v.mean_depth, v.mean_thickness,
+      v.categories.size(), v.leaves_left_out, static_cast<double>(v.reference.paths) * 1e-6, v.effort.trace.seed,
       v.effort.with_wood ? ", wood included" : ", leaves only");
 }
 
