@@ -11,14 +11,12 @@
 #include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
 #include "plants/weber_penn.hpp"
+#include "render/detail/scene_light_file.hpp"
 #include "render/detail/scene_media_file.hpp"
 #include "render/detail/scene_table.hpp"
 #include "render/detail/toml_file.hpp"
 #include "render/image_file.hpp"
 #include "render/radians.hpp"
-#include "sky/preetham.hpp"
-#include "sky/sky_models.hpp"
-#include "sky/solar_position.hpp"
 
 namespace sunfleck {
 namespace {
@@ -31,10 +29,6 @@ TreeKind kindWith(const LeafOptics& leaf) {
   TreeKind kind;
   kind.leaf.fill(leaf);
   return kind;
-}
-
-float degrees(detail::SceneTable& table, const std::string& key, double low, double high, const std::string& rule) {
-  return radiansOf(table.number(key, 0., low, high, rule));
 }
 
 void growTree(TreeKind& kind, const std::string& species_name, std::uint64_t seed) {
@@ -164,19 +158,11 @@ void readStand(Scene& scene, detail::SceneTable stand) {
           scene.origin, scene.kinds[i].name, scene.kinds.size()));
 }
 
-// Zero, which means something of its own, or an angle in a range; in radians.
-float degreesOrZero(detail::SceneTable& table, const std::string& where, const char* key, double low, double high) {
-  const std::string rule = fmt::format("0 or in [{}, {}]", low, high);
-  const double value = table.number(key, 0., 0., high, rule);
-  require(value == 0. || value >= low, where + "." + key, value, rule);
-  return radiansOf(value);
-}
-
 void readCamera(Scene& scene, detail::SceneTable camera) {
   Camera read = kOverview;
-  if (camera.has("elevation_deg")) read.elevation = degrees(camera, "elevation_deg", -90., 90., "in [-90, 90]");
-  if (camera.has("azimuth_deg")) read.azimuth = degrees(camera, "azimuth_deg", -360., 360., "in [-360, 360]");
-  read.field_of_view = degreesOrZero(camera, scene.origin + ": camera", "field_of_view_deg", 0.1, 150.);
+  if (camera.has("elevation_deg")) read.elevation = camera.degrees("elevation_deg", -90., 90., "in [-90, 90]");
+  if (camera.has("azimuth_deg")) read.azimuth = camera.degrees("azimuth_deg", -360., 360., "in [-360, 360]");
+  read.field_of_view = camera.degreesOrZero("field_of_view_deg", 0.1, 150.);
   read.width = camera.count("width", read.width, 8192);
   read.height = camera.count("height", read.height, 8192);
   read = showingAll(scene, read);
@@ -188,87 +174,6 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
       camera.number("half_width", static_cast<double>(read.half_width), 1e-6, 1e6, "in [1e-6, 1e6] m"));
   camera.done();
   scene.camera = read;
-}
-
-// By date, time and place, in place of angles.
-void placeByMoment(Sun& sun, const std::string& origin, detail::SceneTable& table,
-                   const std::array<const char*, 4>& keys) {
-  for (const char* key : keys)
-    if (!table.has(key))
-      throw InvalidInput(
-          fmt::format("{}: [sun] has no key {}: must have all of {}", origin, key, fmt::join(keys, ", ")));
-  for (const char* key : {"zenith_deg", "azimuth_deg"})
-    if (table.has(key))
-      throw InvalidInput(fmt::format("{}: [sun] has both {} and date: must be one of them", origin, key));
-  const std::string date = table.moment("date"), time = table.moment("time");
-  const SolarPosition stands =
-      solarPosition(utcMoment(date, time, origin + ": sun."),
-                    glm::radians(table.number("latitude_deg", 0., -90., 90., "in [-90, 90]")),
-                    glm::radians(table.number("longitude_deg", 0., -180., 180., "in [-180, 180]")));
-  sun.zenith = static_cast<float>(stands.zenith);
-  sun.azimuth = static_cast<float>(stands.azimuth);
-}
-
-Sun readSun(const std::string& origin, detail::SceneTable table) {
-  Sun sun;
-  static constexpr std::array of_moment{"date", "time", "latitude_deg", "longitude_deg"};
-  if (std::ranges::any_of(of_moment, [&](const char* key) { return table.has(key); })) {
-    placeByMoment(sun, origin, table, of_moment);
-  } else {
-    sun.zenith = degrees(table, "zenith_deg", 0., 180., "in [0, 180]");
-    sun.azimuth = degrees(table, "azimuth_deg", -360., 360., "in [-360, 360]");
-  }
-  sun.irradiance = table.perBand("irradiance", sun.irradiance, 10.);
-  sun.diameter = degreesOrZero(table, origin + ": sun", "diameter_deg", 0.25, 60.);  // as Monte Carlo takes it
-  table.done();
-  return sun;
-}
-
-void readSuns(Scene& scene, const toml::node* node, const std::filesystem::path& file) {
-  const toml::array* several = node ? node->as_array() : nullptr;  // [[sun]]
-  if (several && (several->empty() || several->size() > kMostSuns))
-    throw InvalidInput(fmt::format("{}:{}: number of [[sun]] = {}: must be from 1 to {}", file.string(),
-                                   node->source().begin.line, several->size(), kMostSuns));
-  scene.suns.clear();
-  for (std::size_t i = 0; i < (several ? several->size() : 1); ++i)
-    scene.suns.push_back(
-        readSun(scene.origin, detail::SceneTable(several ? several->get(i) : node, file.string(), "sun")));
-}
-
-void readSky(Scene& scene, detail::SceneTable sky, const std::filesystem::path& folder) {
-  constexpr float kIrradiance = 0.2f;
-  constexpr double kMostIrradiance = 1000.;
-  using Kind = SceneSky::Kind;
-  static const std::map<std::string, Kind> kinds{{"none", Kind::none},
-                                                 {"uniform", Kind::uniform},
-                                                 {"overcast", Kind::overcast},
-                                                 {"preetham", Kind::preetham},
-                                                 {"image", Kind::image}};
-  const std::string name = sky.text("kind", "none");
-  const auto kind = kinds.find(name);
-  if (kind == kinds.end())
-    throw InvalidInput(scene.origin + ": sky.kind = \"" + name +
-                       "\": must be none, uniform, overcast, preetham or image");
-  SceneSky& read = scene.sky;
-  read.kind = kind->second;
-  if (read.kind != Kind::none) {
-    read.own_colours = !sky.isList("irradiance");
-    if (read.kind != Kind::preetham || sky.has("irradiance"))
-      read.irradiance = sky.perBand("irradiance", glm::vec3(kIrradiance), kMostIrradiance);
-  }
-  if (read.kind == Kind::preetham) {
-    read.turbidity = sky.number("turbidity", read.turbidity, kLeastTurbidity, kMostTurbidity, "in [1.7, 10]");
-    read.coloured_sun = sky.flag("coloured_sun", read.coloured_sun);
-  }
-  if (read.kind == Kind::image) {
-    if (!sky.has("file")) throw InvalidInput(scene.origin + ": [sky] of kind \"image\" has no key file");
-    read.file = (folder / sky.text("file", "")).string();
-    read.rotation = degrees(sky, "rotation_deg", -360., 360., "in [-360, 360]");
-    ImageSky image = imageSky(readRadiances(read.file), double{read.rotation});
-    read.negative_values = image.negative_values;
-    read.image = std::make_shared<const SkyMap>(std::move(image.sky));
-  }
-  sky.done();
 }
 
 // The bands of an image: red, green and blue, or its one channel for all.
@@ -342,8 +247,8 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
     scene.kinds[0].mesh = std::make_shared<const TreeMesh>();
   }
   readStand(scene, section("stand"));
-  readSuns(scene, table.get("sun"), file);
-  readSky(scene, section("sky"), file.parent_path());
+  detail::readSuns(scene, table.get("sun"), file);
+  detail::readSky(scene, section("sky"), file.parent_path());
   sunAndSky(scene);  // refuses a sky that cannot be
   if (table.contains("camera")) readCamera(scene, section("camera"));
   if (const toml::node* name = table.get("name"); name && !name->is_string())

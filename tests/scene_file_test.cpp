@@ -165,7 +165,7 @@ TEST_F(SceneFile, NamesWhatIsWrong) {
   EXPECT_EQ(refusal("[sun]\nzenith_deg = 195\n"), "s.toml:2: sun.zenith_deg = 195: must be in [0, 180]");
   EXPECT_EQ(refusal("[sun]\nzenith_deg = nan\n"), "s.toml:2: sun.zenith_deg = nan: must be in [0, 180]");
   EXPECT_EQ(refusal("[camera]\nfield_of_view_deg = 0.05\n"),
-            "s.toml: camera.field_of_view_deg = 0.05: must be 0 or in [0.1, 150]");
+            "s.toml:2: camera.field_of_view_deg = 0.05: must be 0 or in [0.1, 150]");
   EXPECT_EQ(refusal("[sun]\nzenit = 1\n"), "s.toml:2: unknown key \"zenit\" in [sun]; see: sunfleck --help scene");
   EXPECT_EQ(refusal("\n[moon]\n"), "s.toml:2: unknown key \"moon\"; see: sunfleck --help scene");
   EXPECT_EQ(refusal("sun = 3\n"), "s.toml:1: sun = 3: must be a table: [sun]");
@@ -315,7 +315,7 @@ TEST_F(SceneFile, RefusesWhatNoSunOrSkyIs) {
             std::string::npos);
   write("sky.png", "");
   EXPECT_NE(refusal("[sky]\nkind = \"image\"\nfile = \"sky.png\"\n").find("must be .exr or .hdr"), std::string::npos);
-  EXPECT_EQ(refusal("[sun]\ndiameter_deg = 0.1\n"), "s.toml: sun.diameter_deg = 0.1: must be 0 or in [0.25, 60]");
+  EXPECT_EQ(refusal("[sun]\ndiameter_deg = 0.1\n"), "s.toml:2: sun.diameter_deg = 0.1: must be 0 or in [0.25, 60]");
   EXPECT_EQ(refusal("[sun]\nirradiance = 11\n"),
             "s.toml:2: sun.irradiance = 11: must be in [0, 10]: one number, or three for red, green and blue");
 }

@@ -35,6 +35,18 @@ class SceneTable {
     return node ? checked(*node, key, low, high, rule) : fallback;
   }
 
+  // An angle given in degrees, 0 unless it is there [rad].
+  float degrees(const std::string& key, double low, double high, const std::string& rule) {
+    return radiansOf(number(key, 0., low, high, rule));
+  }
+  // The same, where zero means something of its own.
+  float degreesOrZero(const std::string& key, double low, double high) {
+    const std::string rule = fmt::format("0 or in [{}, {}]", low, high);
+    const double value = number(key, 0., 0., high, rule);
+    if (value != 0. && value < low) refuse(*table_->get(key), key, rule);
+    return radiansOf(value);
+  }
+
   int count(const std::string& key, int fallback, int high) {
     const toml::node* node = take(key);
     if (!node) return fallback;
@@ -182,6 +194,8 @@ class SceneTable {
     std::ostringstream value;
     if (node.is_table())
       value << "a table";
+    else if (const auto* number = node.as_floating_point())
+      value << fmt::format("{}", number->get());
     else
       node.visit([&](const auto& v) { value << v; });
     throw InvalidInput(fmt::format("{}:{}: {} = {}: must be {}", file_, node.source().begin.line,
