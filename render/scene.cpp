@@ -46,7 +46,7 @@ std::vector<Bounds> prototypeBounds(const Scene& scene) {
 }  // namespace
 
 void intoOnePeriod(Stand& stand) {
-  if (!stand.period) return;
+  if (!stand.period || stand.trees.empty()) return;
   glm::vec2 low(stand.trees.front().position);
   for (const Placement& tree : stand.trees) low = glm::min(low, glm::vec2(tree.position));
   for (Placement& tree : stand.trees) {

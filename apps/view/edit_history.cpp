@@ -12,26 +12,26 @@ void EditHistory::apply(const SceneEdit& edit, std::uint64_t gesture) {
   Document next = edited(now(), edit);
   const bool continues = gesture != 0 && at_ > 0 && steps_[at_].gesture == gesture;
   steps_.resize(at_ + 1);
-  if (continues)
+  const std::uint64_t stand = changesStand(edit) ? ++stands_ : steps_[at_].stand;
+  if (continues) {
     steps_[at_].document = std::move(next);
-  else
-    steps_.push_back({.document = std::move(next), .name = nameOf(edit), .gesture = gesture});
+    steps_[at_].stand = stand;
+  } else {
+    steps_.push_back({.document = std::move(next), .name = nameOf(edit), .gesture = gesture, .stand = stand});
+  }
   if (steps_.size() > kMostSteps + 1) steps_.erase(steps_.begin());
   at_ = steps_.size() - 1;
-  ++revision_;
 }
 
 bool EditHistory::undo() {
   if (at_ == 0) return false;
   --at_;
-  ++revision_;
   return true;
 }
 
 bool EditHistory::redo() {
   if (at_ + 1 == steps_.size()) return false;
   ++at_;
-  ++revision_;
   return true;
 }
 
@@ -46,9 +46,7 @@ std::optional<std::string> EditHistory::redoes() const {
 void EditHistory::select(std::optional<std::size_t> tree) {
   const std::size_t trees = now().scene.stand.trees.size();
   if (tree) require(*tree < trees, "tree", *tree + 1, "one of the stand's trees, 1 to " + std::to_string(trees));
-  if (steps_[at_].document.selected == tree) return;
   steps_[at_].document.selected = tree;
-  ++revision_;
 }
 
 }  // namespace sunfleck::view

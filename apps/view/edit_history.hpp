@@ -30,18 +30,20 @@ class EditHistory {
   // Which tree is selected is no step of its own, but comes back with the document. Throws InvalidInput when there is
   // no such tree.
   void select(std::optional<std::size_t> tree);
-  // How many changes there have been, undone ones and selections included: what is as old as this is up to date.
-  std::uint64_t revision() const { return revision_; }
+  // Another number whenever scene or effort are others, and the same again once they are the same by undo or redo. What
+  // is selected, the model and saved cameras do not count: nothing that is computed of a stand hangs on them.
+  std::uint64_t stand() const { return steps_[at_].stand; }
 
  private:
   struct Step {
     Document document;
     std::string name;  // of the edit that led here
     std::uint64_t gesture = 0;
+    std::uint64_t stand = 0;
   };
   std::vector<Step> steps_;  // the first is what there was before any edit
   std::size_t at_ = 0;
-  std::uint64_t revision_ = 0;
+  std::uint64_t stands_ = 0;  // there have been
 };
 
 }  // namespace sunfleck::view

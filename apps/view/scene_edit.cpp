@@ -160,8 +160,24 @@ std::string nameOf(const SceneEdit& edit) {
   return std::visit(Name{}, edit);
 }
 
+namespace {
+
+bool placesTrees(const SceneEdit& edit) {
+  return std::holds_alternative<MoveTree>(edit) || std::holds_alternative<AddTrees>(edit) ||
+         std::holds_alternative<AddKind>(edit);
+}
+
+}  // namespace
+
+bool changesStand(const SceneEdit& edit) {
+  return !std::holds_alternative<SetModel>(edit) && !std::holds_alternative<SaveCamera>(edit) &&
+         !std::holds_alternative<ForgetCamera>(edit);
+}
+
 Document edited(Document document, const SceneEdit& edit) {
   std::visit(Apply{document}, edit);
+  if (!placesTrees(edit)) return document;
+  intoOnePeriod(document.scene.stand);
   requireDrawable(document.scene);
   return document;
 }

@@ -56,6 +56,9 @@ using SceneEdit = std::variant<SetSuns, SetSky, SetGround, SetOptics, SetModel, 
 // What was done, for people: "move tree".
 std::string nameOf(const SceneEdit& edit);
 
+// Whether the stand's geometry or light may be others after it.
+bool changesStand(const SceneEdit& edit);
+
 // The document after the edit. Throws InvalidInput where a value is out of its range, or where the models cannot treat
 // what would become of the stand.
 Document edited(Document document, const SceneEdit& edit);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <utility>
 
 #include "core/random.hpp"
 #include "core/require.hpp"
@@ -74,13 +75,11 @@ void Session::advance() {
     read_.reset();
     camera = cameraOf(document().scene);
   }
-  if (grown_ && !worker_.state().busy) {  // it has ended, with a kind or without
-    const std::shared_ptr<std::optional<TreeKind>> kind = std::move(grown_);
-    grown_.reset();
-    if (*kind) attempt([&] { edit(AddKind{**kind, {glm::vec2(camera.target), groundHeight()}}); });
-  }
-  if (wished_ != history_->revision() + 1) {
-    wished_ = history_->revision() + 1;
+  if (!grown_.empty() && !worker_.state().busy)  // they have ended, with a kind or without
+    for (const auto& kind : std::exchange(grown_, {}))
+      if (*kind) attempt([&] { edit(AddKind{**kind, {glm::vec2(camera.target), groundHeight()}}); });
+  if (wished_ != history_->stand() + 1) {
+    wished_ = history_->stand() + 1;
     worker_.wish({.scene = document().scene, .needs = {}, .effort = document().effort, .revision = wished_});
   }
 }
@@ -172,9 +171,9 @@ void Session::turnSunByDate(std::size_t sun, const std::string& date, const std:
 }
 
 void Session::addKind(const std::string& species_or_file, std::uint64_t seed) {
-  grown_ = std::make_shared<std::optional<TreeKind>>();
+  grown_.push_back(std::make_shared<std::optional<TreeKind>>());
   worker_.run("growing " + species_or_file,
-              [species_or_file, seed, into = grown_] { *into = readKind(species_or_file, seed); });
+              [species_or_file, seed, into = grown_.back()] { *into = readKind(species_or_file, seed); });
 }
 
 std::uint32_t Session::selectedKind() const {
@@ -236,12 +235,12 @@ void Session::release(const StandWorker::Result& shown) {
 }
 
 bool Session::upToDate() const {
-  return loaded() && !grown_ && shown_ == history_->revision() + 1;
+  return loaded() && grown_.empty() && shown_ == history_->stand() + 1;
 }
 
 void Session::cancel() {
   worker_.cancel();
-  grown_.reset();
+  grown_.clear();
   if (loaded()) shown_ = wished_;  // what is drawn stays until the next change
   say("cancelled");
 }

@@ -103,9 +103,9 @@ class Session {
 
  private:
   std::optional<EditHistory> history_;
-  std::shared_ptr<std::optional<Document>> read_;   // by the worker
-  std::shared_ptr<std::optional<TreeKind>> grown_;  // by the worker
-  std::uint64_t wished_ = 0, shown_ = 0;            // revisions, one more than the history's
+  std::shared_ptr<std::optional<Document>> read_;                // by the worker
+  std::vector<std::shared_ptr<std::optional<TreeKind>>> grown_;  // by the worker, in turn
+  std::uint64_t wished_ = 0, shown_ = 0;                         // stands of the history, one more than its numbers
   std::uint64_t gesture_ = 0, strokes_ = 0;
   std::vector<ProductCost> last_costs_, recomputed_;
   double last_seconds_ = 0.;

@@ -47,6 +47,7 @@ void StandWorker::cancel() {
   cancelled_ = working_;
   tasks_.clear();
   wish_.reset();
+  result_.reset();
 }
 
 std::optional<StandWorker::Result> StandWorker::take() {

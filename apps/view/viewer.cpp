@@ -42,7 +42,6 @@ Viewer::Viewer(const ViewerOptions& options)
       renderer_(*context_, exactPowerTable),
       tracing_(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)) {
   session_.look = options.look;
-  renderer_.timePasses(true);
   report_.renderer = context_->renderer();
 }
 
@@ -186,8 +185,10 @@ PictureKey Viewer::keyOf(Model model) const {
 bool Viewer::drawPictures() {
   if (stand_ == 0) return false;
   const Look& look = session_.look;
+  renderer_.timePasses(panels_.shown && panels_.right == Tab::times);  // it waits for each pass
   bool drew = a_.draw(renderer_, keyOf(session_.document().model), look.samples);
   const bool compares = look.comparison != Comparison::off || flipped_;
+  endStaleReference();
   if (compares && look.other) drew |= b_.draw(renderer_, keyOf(*look.other), look.samples);
   if (drew)
     report_.passes_ms = {{"what is seen", 1e3 * a_.cost().visible_seconds},

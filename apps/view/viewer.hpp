@@ -54,6 +54,14 @@ class Viewer {
     bool operator==(const ReferenceKey&) const = default;
   };
 
+  // What the difference was told of.
+  struct ComparedKey {
+    PictureKey a;
+    std::optional<PictureKey> b;  // none: the reference
+    int samples = 0;
+    bool operator==(const ComparedKey&) const = default;
+  };
+
   bool frame();
   Input nextInput();
   void act(const Input& input);
@@ -64,6 +72,8 @@ class Viewer {
   void move(const Input& input);
   bool drawPictures();
   void compare();
+  ReferenceKey referenceKey() const;
+  void endStaleReference();
   std::optional<Shown> referenceShown();
   void overlay();
   void serve(Requests& requests);
@@ -109,13 +119,15 @@ class Viewer {
   std::optional<ReferenceKey> reference_key_;  // that it runs for
   Elapsed reference_clock_;
   double looked_seconds_ = -1.;
-  std::optional<std::pair<PictureKey, PictureKey>> compared_;
+  std::optional<ComparedKey> compared_;
+  float largest_difference_ = 0.f;  // but for outliers
   bool flipped_ = false;
 
   glm::ivec2 corner_{0};  // of the picture in the window [pixel]
   Input input_, before_;
   Drag drag_ = Drag::none;
-  bool dragged_ = false;
+  bool dragged_ = false;    // further than a click may move
+  glm::vec2 pressed_{0.f};  // where the drag began
   std::uint64_t gesture_ = 0;
   glm::vec2 grip_{0.f};  // of a tree: from its place to where it was taken hold of on the ground [m]
   std::optional<glm::vec2> probed_;

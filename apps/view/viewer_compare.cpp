@@ -24,24 +24,30 @@ Image imageOf(const ProgressivePicture& picture) {
 
 }  // namespace
 
+Viewer::ReferenceKey Viewer::referenceKey() const {
+  return {.camera = session_.camera, .stand = stand_, .target = session_.look.reference_noise};
+}
+
+// Ends what is of another picture, whether anyone looks at it or not.
+void Viewer::endStaleReference() {
+  if (!reference_key_ || *reference_key_ == referenceKey()) return;
+  tracing_.cancel();
+  reference_key_.reset();
+  reference_texture_.clear();
+  compared_.reset();
+  report_.error.reset();
+  report_.reference_noise = report_.reference_done = report_.reference_seconds = 0.;
+  report_.reference_runs = false;
+  report_.reference_failure.clear();
+}
+
 std::optional<Shown> Viewer::referenceShown() {
-  const Document& document = session_.document();
-  const bool settled = still();
-  const ReferenceKey key{.camera = session_.camera, .stand = stand_, .target = session_.look.reference_noise};
-  if (reference_key_ != key) {
-    reference_texture_.clear();  // it is of another picture
-    compared_.reset();
-    report_.error.reset();
-    report_.reference_noise = report_.reference_done = report_.reference_seconds = 0.;
-    report_.reference_runs = false;
-    report_.reference_failure.clear();
-    if (reference_key_) tracing_.cancel();
-    reference_key_.reset();
-    if (!settled || drag_ != Drag::none) return std::nullopt;
-    Scene scene = document.scene;
+  if (!reference_key_) {
+    if (!still() || drag_ != Drag::none) return std::nullopt;
+    Scene scene = session_.document().scene;
     scene.camera = session_.camera;
-    tracing_.start(scene, key.target);
-    reference_key_ = key;
+    reference_key_ = referenceKey();
+    tracing_.start(scene, reference_key_->target);
     reference_clock_ = Elapsed();
     looked_seconds_ = -1.;
     report_.reference_runs = true;
@@ -56,7 +62,7 @@ std::optional<Shown> Viewer::referenceShown() {
     report_.reference_finished = seen.finished;
     if (std::isfinite(seen.noise) && seen.noise > 0.) {
       report_.reference_noise = seen.noise;
-      report_.reference_done = std::min(1., key.target * key.target / (seen.noise * seen.noise));
+      report_.reference_done = std::min(1., std::pow(reference_key_->target / seen.noise, 2.));
     }
     if (seen.radiance.width == picture_.size().x && seen.radiance.height == picture_.size().y && seen.samples > 0.) {
       reference_texture_.set(seen.radiance);
@@ -70,10 +76,12 @@ std::optional<Shown> Viewer::referenceShown() {
 // Differences are told of whole pictures alone: smooth ones, or what there is of Monte Carlo.
 void Viewer::compare() {
   const Look& look = session_.look;
-  const PictureKey a = keyOf(session_.document().model), b = keyOf(look.other.value_or(session_.document().model));
-  if (compared_ == std::pair(a, b)) return;
-  const bool there = look.other ? b_.done(look.samples) && b_.key() == b : reference_texture_.shown().has_value();
-  if (!a_.done(look.samples) || !(a_.key() == a) || !there) {
+  report_.difference_scale = look.difference_scale > 0.f ? look.difference_scale : std::max(largest_difference_, 1e-6f);
+  ComparedKey key{.a = keyOf(session_.document().model), .b = {}, .samples = look.samples};
+  if (look.other) key.b = keyOf(*look.other);
+  if (compared_ == key) return;
+  const bool there = key.b ? b_.done(look.samples) && b_.key() == *key.b : reference_texture_.shown().has_value();
+  if (!a_.done(look.samples) || !(a_.key() == key.a) || !there) {
     report_.error.reset();
     return;
   }
@@ -83,8 +91,8 @@ void Viewer::compare() {
   const auto rank =
       differences.begin() + static_cast<std::ptrdiff_t>(kShareInScale * static_cast<double>(differences.size() - 1));
   std::nth_element(differences.begin(), rank, differences.end());
-  report_.difference_scale = look.difference_scale > 0.f ? look.difference_scale : std::max(*rank, 1e-6f);
-  compared_ = std::pair(a, b);
+  largest_difference_ = *rank;
+  compared_ = key;
 }
 
 Probe Viewer::probeAt(glm::vec2 place) {

@@ -41,6 +41,7 @@ void Viewer::act(const Input& input) {
 void Viewer::beginDrag(const Input& input, glm::vec2 place) {
   const Look& look = session_.look;
   dragged_ = false;
+  pressed_ = place;
   gesture_ = session_.newGesture();
   const float line = std::round(look.wipe * static_cast<float>(session_.camera.width));
   if (input.buttons[1] || input.buttons[2]) {
@@ -81,7 +82,8 @@ void Viewer::actByMouse(const Input& input, glm::vec2 place, glm::vec2 by) {
       camera = flown(camera, 0.f, 0.f, 0.2f * camera.half_width * input.wheel);
   }
   if (drag_ == Drag::none || !held || (by == glm::vec2(0.f) && drag_ != Drag::paint)) return;
-  if (glm::length(by) > 0.f && (dragged_ || glm::length(by) >= 1.f)) dragged_ = true;
+  if (!dragged_ && drag_ != Drag::paint && glm::distance(place, pressed_) <= kClick) return;
+  dragged_ = true;
   switch (drag_) {
     case Drag::turn:
       camera = look.navigation == Navigation::orbit ? orbited(camera, -kTurn * by.x, kTurn * by.y)

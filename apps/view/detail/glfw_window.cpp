@@ -61,6 +61,7 @@ class GlfwWindow final : public Window {
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
+    glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);  // a click may be shorter than a frame
     input_.held.assign(kKeys, false);
     glfwSetScrollCallback(window_,
                           [](GLFWwindow* w, double, double steps) { of(w).input_.wheel += static_cast<float>(steps); });
