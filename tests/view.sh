@@ -1,14 +1,18 @@
 #!/usr/bin/env bash
 # Runs the viewer by scripts, without a window or in one: pictures must be equal where nothing may differ, changes must
 # compute what they need and nothing else, and what is wrong must end in one line. Usage: view.sh PATH_TO_SUNFLECK WAY
-#   WAY  "offscreen", or "window" to open one on the display of xvfb-run; status 77 where there is no such program
+#   WAY  "offscreen", or "window" to open one on a display of Xvfb; status 77 where there is no such program
 source "$(dirname "$0")/as_a_user.bash" "$1"
 way=$2
 
 if [ "$way" = window ]; then
-  command -v xvfb-run >/dev/null || { echo "skipped: there is no xvfb-run (package xvfb)"; exit 77; }
-  export WAYLAND_DISPLAY=
-  view() { xvfb-run -a -s "-screen 0 1280x1024x24" "$program" view "$@"; }
+  command -v Xvfb >/dev/null || { echo "skipped: there is no Xvfb (package xvfb)"; exit 77; }
+  mkfifo display
+  Xvfb -displayfd 3 -screen 0 1280x1024x24 -nolisten tcp 3>display >/dev/null 2>&1 &
+  trap 'kill '$!'; rm -rf "$place" "$place.before"' EXIT
+  read -r number <display && rm display
+  export WAYLAND_DISPLAY= DISPLAY=:$number
+  view() { "$program" view "$@"; }
 else
   view() { "$program" view --offscreen "$@"; }
 fi
