@@ -2,7 +2,8 @@
 # Runs the viewer by scripts, without a window or in one: pictures must be equal where nothing may differ, changes must
 # compute what they need and nothing else, and what is wrong must end in one line. Usage: view.sh PATH_TO_SUNFLECK WAY
 #   WAY  "offscreen", or "window" to open one on a display of Xvfb; status 77 where there is no such program
-source "$(dirname "$0")/as_a_user.bash" "$1"
+tests=$(readlink -f "$(dirname "$0")")
+source "$tests/as_a_user.bash" "$1"
 way=$2
 
 if [ "$way" = window ]; then
@@ -213,6 +214,12 @@ runs save.txt trees.toml
 runs open.txt saved.toml
 cmp -s shown.png opened.png || fail "the saved scene looks different"
 "$program" render saved.toml -o rendered.png >/dev/null 2>stderr.txt || fail "render of the saved scene: $(cat stderr.txt)"
+
+# The script that the documentation shows.
+awk '/^    # turn the sun/ { shows = 1 } shows && !/^    / { exit } shows' \
+  "$tests/../docs/VIEWER.md" | sed 's/^    //; s/^samples 16/panels off\nresize 90 60\nsamples 2/; s/0\.05 /0.5 /' >shown.txt
+grep -q '^save scene.toml' shown.txt || fail "docs/VIEWER.md: no script is found"
+runs shown.txt trees.toml
 
 # Monte Carlo beside a model, the same on every run.
 for run in one two; do

@@ -156,7 +156,7 @@ const std::vector<Form>& forms() {
       {Verb::expect_recomputed,
        "expect recomputed",
        {text("PRODUCT"), whole("NUMBER", 0., 1e9, true)},
-       "since the last such line or wait: a product (with _ for spaces), or none at all"},
+       "since the last such line: a product (with _ for spaces), or none at all"},
       {Verb::expect_trees, "expect trees", {whole("NUMBER", 0., 1e9)}, "stand in the scene"},
       {Verb::expect_selected, "expect selected", {whole("TREE", 0., 1e9)}, "this tree, or 0 for none"},
       {Verb::expect_same, "expect same", {text("FILE"), text("FILE")}, "two files of the same bytes"},
