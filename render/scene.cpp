@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "core/require.hpp"
+
 namespace sunfleck {
 namespace {
 
@@ -46,13 +48,24 @@ std::vector<Bounds> prototypeBounds(const Scene& scene) {
 }  // namespace
 
 void intoOnePeriod(Stand& stand) {
-  if (!stand.period) return;
+  if (!stand.period || stand.trees.empty()) return;
   glm::vec2 low(stand.trees.front().position);
   for (const Placement& tree : stand.trees) low = glm::min(low, glm::vec2(tree.position));
   for (Placement& tree : stand.trees) {
     const glm::vec2 periods = glm::floor((glm::vec2(tree.position) - low) / *stand.period);
     tree.position -= glm::vec3(periods * *stand.period, 0.f);
   }
+}
+
+const Camera& savedCamera(const Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.saved_cameras, name, &SavedCamera::name);
+  if (found == scene.saved_cameras.end()) {
+    std::string names;
+    for (const SavedCamera& saved : scene.saved_cameras) names += (names.empty() ? "" : ", ") + saved.name;
+    throw InvalidInput("camera \"" + name + "\": must be a saved one" +
+                       (names.empty() ? "; there is none" : ": " + names));
+  }
+  return found->camera;
 }
 
 std::vector<const TreeMesh*> meshes(const Scene& scene) {
