@@ -131,7 +131,7 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
                                  .piece_pixels = options.detail,
                                  .layers = layersOf(options),
                                  .exact = exactPowerTable};
-  Scene scene = readScene(options.scene);
+  Scene scene = readScene(options.scene, Media::refused, Treeless::taken);
   apply(options.camera, scene);
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
   const Drawn result = [&] {

@@ -29,7 +29,7 @@ int runView(const ViewOptions& options) {
   viewer.read = [options] {
     view::Document document;
     document.model = modelNamed(options.model).value_or(document.model);
-    document.scene = readScene(options.scene);
+    document.scene = readScene(options.scene, Media::refused, Treeless::taken);
     apply(options.camera, document.scene);
     if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(document.scene);
     return document;

@@ -90,7 +90,7 @@ void placeSun(const SceneOptions& options, Sun& sun) {
 
 }  // namespace
 
-Scene readScene(const SceneOptions& options, Media media) {
+Scene readScene(const SceneOptions& options, Media media, Treeless treeless) {
   requireMeshFor(options);
   ImportRules rules;
   rules.leaf = options.leaf;
@@ -100,6 +100,8 @@ Scene readScene(const SceneOptions& options, Media media) {
   Scene scene = sunfleck::readScene(options.scene, rules);
   if (media == Media::refused && !scene.media.empty())
     throw InvalidInput(options.scene + ": has a [medium], which trace alone takes");
+  if (treeless == Treeless::refused && scene.stand.trees.empty())
+    throw InvalidInput(options.scene + ": stand.kind = \"none\": must have a tree (view and render take none)");
   for (const TreeKind& kind : scene.kinds)
     if (kind.dropped.leaf_triangles > 0)
       fmt::print(stderr, "sunfleck: {}: left out {} leaf triangles of no area{}\n", options.scene,
@@ -124,6 +126,7 @@ Scene readScene(const SceneOptions& options, Media media) {
 
 void addCameraOptions(CLI::App& command, CameraOptions& options, const std::string& target_name) {
   const std::string group = "Camera (shows the whole stand unless told otherwise)";
+  command.add_option("--saved-camera", options.saved, "One that the scene file has saved, by its name")->group(group);
   command.add_option("--elevation", options.elevation_deg, "Height of the camera above the horizon, in degrees")
       ->check(numberIn(-90., 90., "in [-90, 90] degrees"))
       ->group(group);
@@ -154,6 +157,7 @@ void addCameraOptions(CLI::App& command, CameraOptions& options, const std::stri
 
 void apply(const CameraOptions& options, Scene& scene) {
   if (!options.given()) return;
+  if (!options.saved.empty()) scene.camera = savedCamera(scene, options.saved);
   Camera camera = scene.camera.value_or(kOverview);
   if (options.elevation_deg) camera.elevation = radiansOf(*options.elevation_deg);
   if (options.azimuth_deg) camera.azimuth = radiansOf(*options.azimuth_deg);

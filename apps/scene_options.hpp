@@ -23,17 +23,21 @@ struct SceneOptions {
   std::optional<std::vector<float>> period;
 };
 void addSceneOptions(CLI::App& command, SceneOptions& options);
-// Scenes with media are refused where nothing is done with them.
+// Scenes with media, and those in which no tree stands, are refused where nothing is done with them.
 enum class Media { refused, taken };
-Scene readScene(const SceneOptions& options, Media media = Media::refused);
+enum class Treeless { refused, taken };
+Scene readScene(const SceneOptions& options, Media media = Media::refused, Treeless treeless = Treeless::refused);
 
 // The camera, as far as the command line changes it.
 struct CameraOptions {
+  std::string saved;  // name of a saved one to begin with
   std::optional<double> elevation_deg, azimuth_deg, field_of_view_deg;
   std::optional<float> half_width;
   std::optional<std::vector<float>> target;
   std::optional<std::vector<int>> size;
-  bool given() const { return elevation_deg || azimuth_deg || half_width || field_of_view_deg || target || size; }
+  bool given() const {
+    return !saved.empty() || elevation_deg || azimuth_deg || half_width || field_of_view_deg || target || size;
+  }
 };
 //   target_name  of the option for the point in the middle; where --target is an error, --look-at alone
 void addCameraOptions(CLI::App& command, CameraOptions& options, const std::string& target_name = "--look-at,--target");

@@ -18,7 +18,7 @@ struct Placement {
 
 // The arrangement of the trees. With a period, the whole arrangement repeats without end in x and y.
 struct Stand {
-  std::vector<Placement> trees{Placement{}};  // at least one
+  std::vector<Placement> trees{Placement{}};
   std::optional<glm::vec2> period{};          // side lengths of the repeated rectangle [m], > 0
   bool operator==(const Stand&) const = default;
 };

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "core/require.hpp"
+
 namespace sunfleck {
 namespace {
 
@@ -53,6 +55,17 @@ void intoOnePeriod(Stand& stand) {
     const glm::vec2 periods = glm::floor((glm::vec2(tree.position) - low) / *stand.period);
     tree.position -= glm::vec3(periods * *stand.period, 0.f);
   }
+}
+
+const Camera& savedCamera(const Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.saved_cameras, name, &SavedCamera::name);
+  if (found == scene.saved_cameras.end()) {
+    std::string names;
+    for (const SavedCamera& saved : scene.saved_cameras) names += (names.empty() ? "" : ", ") + saved.name;
+    throw InvalidInput("camera \"" + name + "\": must be a saved one" +
+                       (names.empty() ? "; there is none" : ": " + names));
+  }
+  return found->camera;
 }
 
 std::vector<const TreeMesh*> meshes(const Scene& scene) {

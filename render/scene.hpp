@@ -56,11 +56,19 @@ struct Sun {
   bool operator==(const Sun&) const = default;
 };
 
+// Where to look from, kept under a name.
+struct SavedCamera {
+  std::string name;  // 1 .. kLongestCameraName bytes
+  Camera camera;
+  bool operator==(const SavedCamera&) const = default;
+};
+inline constexpr std::size_t kLongestCameraName = 64;
+
 // What is simulated: kinds of trees, where they stand, the ground, the suns and the sky.
 struct Scene {
   std::string name;
   std::string origin;                       // the file or the name it was read from, with which messages begin
-  std::vector<TreeKind> kinds{TreeKind{}};  // at least one; of each stands a tree
+  std::vector<TreeKind> kinds{TreeKind{}};  // at least one
   Stand stand;
   std::vector<SceneMedium> media;  // of these, trace alone knows; trees may then be without leaves or without anything
   glm::vec3 ground_albedo{0.f};    // Lambertian, per band [1], 0 .. 1; other grounds, per band, in its place:
@@ -69,7 +77,8 @@ struct Scene {
   std::string ground_texture_file;                                          // that they were read from
   std::vector<Sun> suns{Sun{}};  // 1 .. kMostSuns; the first is the one that lights the sky
   SceneSky sky;
-  std::optional<Camera> camera;  // none: one that shows the whole stand
+  std::optional<Camera> camera;            // none: one that shows the whole stand
+  std::vector<SavedCamera> saved_cameras;  // names differ
 
   const Sun& sun() const { return suns.front(); }
   const TreeKind& kindOf(const Placement& tree) const { return kinds[tree.kind]; }
@@ -78,6 +87,8 @@ struct Scene {
 std::vector<const TreeMesh*> meshes(const Scene& scene);  // of the kinds
 // What the leaves of all kinds came from, for people.
 std::string sourceOf(const Scene& scene);
+// The camera of that name. Throws InvalidInput where none was saved under it.
+const Camera& savedCamera(const Scene& scene, const std::string& name);
 // Moves trees of a periodic stand by whole periods where they are spread over more than one: the stand is the same, and
 // all its trees stand together.
 void intoOnePeriod(Stand& stand);

@@ -143,11 +143,15 @@ void readStand(Scene& scene, detail::SceneTable stand) {
     if (!stand.has("positions"))
       throw InvalidInput(scene.origin + ": [stand] of kind \"positions\" has no key positions");
     scene.stand.trees = stand.placements("positions", scene.kinds);
+  } else if (kind == "none") {
+    scene.stand.trees.clear();
   } else if (kind != "single") {
-    throw InvalidInput(scene.origin + ": stand.kind = \"" + kind + "\": must be single, periodic, grid or positions");
+    throw InvalidInput(scene.origin + ": stand.kind = \"" + kind +
+                       "\": must be single, periodic, grid, positions or none");
   }
   stand.done();
   intoOnePeriod(scene.stand);
+  if (kind == "none") return;
   std::vector<char> stands(scene.kinds.size());
   for (const Placement& tree : scene.stand.trees) stands[tree.kind] = true;
   for (std::size_t i = 0; i < stands.size(); ++i)
@@ -158,7 +162,7 @@ void readStand(Scene& scene, detail::SceneTable stand) {
           scene.origin, scene.kinds[i].name, scene.kinds.size()));
 }
 
-void readCamera(Scene& scene, detail::SceneTable camera) {
+Camera readCamera(const Scene& scene, detail::SceneTable& camera) {
   Camera read = kOverview;
   if (camera.has("elevation_deg")) read.elevation = camera.degrees("elevation_deg", -90., 90., "in [-90, 90]");
   if (camera.has("azimuth_deg")) read.azimuth = camera.degrees("azimuth_deg", -360., 360., "in [-360, 360]");
@@ -173,7 +177,25 @@ void readCamera(Scene& scene, detail::SceneTable camera) {
   read.half_width = static_cast<float>(
       camera.number("half_width", static_cast<double>(read.half_width), 1e-6, 1e6, "in [1e-6, 1e6] m"));
   camera.done();
-  scene.camera = read;
+  return read;
+}
+
+void readSavedCameras(Scene& scene, const toml::node& node, const std::filesystem::path& file) {
+  const auto refuse = [&](const toml::node& at, const std::string& what) {
+    throw InvalidInput(fmt::format("{}:{}: {}", file.string(), at.source().begin.line, what));
+  };
+  const toml::array* all = node.as_array();
+  if (!all) refuse(node, "saved_camera: must be a [[saved_camera]] for each");
+  for (const toml::node& one : *all) {
+    detail::SceneTable table(&one, file.string(), "saved_camera");
+    const std::string name = table.text("name", "");
+    if (name.empty() || name.size() > kLongestCameraName)
+      refuse(one, fmt::format("saved_camera.name = \"{}\": must be 1 to {} characters", name.substr(0, 80),
+                              kLongestCameraName));
+    if (std::ranges::find(scene.saved_cameras, name, &SavedCamera::name) != scene.saved_cameras.end())
+      refuse(one, fmt::format("saved_camera.name = \"{}\": must differ from that of the other ones", name));
+    scene.saved_cameras.push_back({name, readCamera(scene, table)});
+  }
 }
 
 // The bands of an image: red, green and blue, or its one channel for all.
@@ -224,8 +246,8 @@ void readGround(Scene& scene, detail::SceneTable ground, const std::filesystem::
 
 Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   for (const auto& [key, node] : table) {
-    static constexpr std::array known{"name", "tree",   "medium", "stand", "leaf",
-                                      "wood", "ground", "sun",    "sky",   "camera"};
+    static constexpr std::array known{"name",   "tree", "medium", "stand",  "leaf",        "wood",
+                                      "ground", "sun",  "sky",    "camera", "saved_camera"};
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       throw InvalidInput(fmt::format("{}:{}: unknown key \"{}\"; see: sunfleck --help scene", file.string(),
                                      node.source().begin.line, key.str()));
@@ -250,7 +272,11 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   detail::readSuns(scene, table.get("sun"), file);
   detail::readSky(scene, section("sky"), file.parent_path());
   sunAndSky(scene);  // refuses a sky that cannot be
-  if (table.contains("camera")) readCamera(scene, section("camera"));
+  if (table.contains("camera")) {
+    detail::SceneTable camera = section("camera");
+    scene.camera = readCamera(scene, camera);
+  }
+  if (const toml::node* cameras = table.get("saved_camera")) readSavedCameras(scene, *cameras, file);
   if (const toml::node* name = table.get("name"); name && !name->is_string())
     throw InvalidInput(fmt::format("{}:{}: name: must be a text in quotes", file.string(), name->source().begin.line));
   scene.name = table["name"].value_or(file.stem().string());
@@ -365,7 +391,7 @@ seed = 1
 # Several media, a [[medium]] for each, may fill the same space.
 
 [stand]
-kind = "single"               # single | periodic | grid | positions
+kind = "single"               # single | periodic | grid | positions | none: no tree stands, for view and render alone
 # period = [8.0, 8.0]         # periodic: sides of the repeated rectangle; the leaves' box if not given
 # side = 4                    # grid: side x side trees, 1 to 100 ...
 # spacing = [8.0, 8.0]        # ... this far apart; the leaves' box if not given
@@ -424,6 +450,8 @@ kind = "none"                 # none | uniform | overcast | preetham | image
 # field_of_view_deg = 0.0     # of the picture's width, 0.1 to 150; 0: orthographic
 # width = 512                 # pixels, 1 to 8192
 # height = 512
+# Others to look from, as view saves them and --saved-camera takes them: a [[saved_camera]] for each, with these keys and
+# name = "from the road"      # 1 to 64 characters, other than those of the others
 )";
 }
 

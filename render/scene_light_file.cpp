@@ -8,9 +8,7 @@
 #include <map>
 
 #include "core/require.hpp"
-#include "render/image_file.hpp"
 #include "sky/preetham.hpp"
-#include "sky/sky_models.hpp"
 #include "sky/solar_position.hpp"
 
 namespace sunfleck::detail {
@@ -62,7 +60,6 @@ void readSuns(Scene& scene, const toml::node* node, const std::filesystem::path&
 }
 
 void readSky(Scene& scene, SceneTable sky, const std::filesystem::path& folder) {
-  constexpr float kIrradiance = 0.2f;
   constexpr double kMostIrradiance = 1000.;
   using Kind = SceneSky::Kind;
   static const std::map<std::string, Kind> kinds{{"none", Kind::none},
@@ -80,7 +77,7 @@ void readSky(Scene& scene, SceneTable sky, const std::filesystem::path& folder) 
   if (read.kind != Kind::none) {
     read.own_colours = !sky.isList("irradiance");
     if (read.kind != Kind::preetham || sky.has("irradiance"))
-      read.irradiance = sky.perBand("irradiance", glm::vec3(kIrradiance), kMostIrradiance);
+      read.irradiance = sky.perBand("irradiance", glm::vec3(glm::dvec3(kSkyIrradiance)), kMostIrradiance);
   }
   if (read.kind == Kind::preetham) {
     read.turbidity = sky.number("turbidity", read.turbidity, kLeastTurbidity, kMostTurbidity, "in [1.7, 10]");
@@ -90,9 +87,7 @@ void readSky(Scene& scene, SceneTable sky, const std::filesystem::path& folder) 
     if (!sky.has("file")) throw InvalidInput(scene.origin + ": [sky] of kind \"image\" has no key file");
     read.file = (folder / sky.text("file", "")).string();
     read.rotation = sky.degrees("rotation_deg", -360., 360., "in [-360, 360]");
-    ImageSky image = imageSky(readRadiances(read.file), double{read.rotation});
-    read.negative_values = image.negative_values;
-    read.image = std::make_shared<const SkyMap>(std::move(image.sky));
+    readSkyImage(read);
   }
   sky.done();
 }

@@ -5,6 +5,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "core/require.hpp"
+#include "render/image_file.hpp"
 #include "render/scene.hpp"
 #include "sky/preetham.hpp"
 #include "sky/sky_models.hpp"
@@ -28,6 +29,12 @@ SkyMap asBright(const SkyMap& sky, const SceneSky& as) {
 }
 
 }  // namespace
+
+void readSkyImage(SceneSky& sky) {
+  ImageSky image = imageSky(readRadiances(sky.file), double{sky.rotation});
+  sky.negative_values = image.negative_values;
+  sky.image = std::make_shared<const SkyMap>(std::move(image.sky));
+}
 
 SunAndSky sunAndSky(const Scene& scene) {
   const SceneSky& asked = scene.sky;

@@ -13,6 +13,8 @@ namespace sunfleck {
 
 struct Scene;
 
+inline constexpr double kSkyIrradiance = 0.2;  // of skies that are not told theirs
+
 // The sky that a scene asks for; where the sun stands is the scene's.
 struct SceneSky {
   enum class Kind { none, uniform, overcast, preetham, image };
@@ -29,6 +31,10 @@ struct SceneSky {
   std::size_t negative_values = 0;  // of the image, taken for 0
   bool operator==(const SceneSky&) const = default;
 };
+
+// Reads the image of a sky that names its file, turned by its rotation. Throws InvalidInput as readRadiances() and
+// imageSky() do.
+void readSkyImage(SceneSky& sky);
 
 // The light of a scene, per band. Preetham's sky is black when its sun has set.
 struct SunAndSky {

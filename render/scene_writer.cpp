@@ -83,8 +83,9 @@ class Writer {
     key("name", quoted(scene_.name));
     std::vector<char> stands(scene_.kinds.size());
     for (const Placement& tree : scene_.stand.trees) stands[tree.kind] = true;
+    if (scene_.stand.trees.empty()) stands.assign(stands.size(), true);  // all may be planted again
     const bool treeless =
-        scene_.stand.trees.empty() || scene_.kinds[scene_.stand.trees.front().kind].mesh->leaf_count == 0;
+        scene_.kinds[static_cast<std::size_t>(std::ranges::find(stands, 1) - stands.begin())].mesh->leaf_count == 0;
     if (treeless && scene_.media.empty()) refuse("has neither trees nor media");
     if (treeless) writeOptics(scene_.kinds.front());
     for (std::size_t kind = 0; !treeless && kind < scene_.kinds.size(); ++kind)
@@ -94,7 +95,15 @@ class Writer {
     writeGround();
     for (const Sun& sun : scene_.suns) writeSun(sun);
     writeSky();
-    if (scene_.camera) writeCamera(*scene_.camera);
+    if (scene_.camera) {
+      table("camera");
+      writeCamera(*scene_.camera);
+    }
+    for (const SavedCamera& saved : scene_.saved_cameras) {
+      table("saved_camera", true);
+      key("name", quoted(saved.name));
+      writeCamera(saved.camera);
+    }
     return std::move(text_);
   }
 
@@ -192,6 +201,7 @@ class Writer {
   void writeStand(bool treeless) {
     table("stand");
     const Stand& stand = scene_.stand;
+    if (!treeless && stand.trees.empty()) return key("kind", "\"none\"");
     key("kind", stand.period ? "\"periodic\"" : treeless ? "\"single\"" : "\"positions\"");
     if (stand.period) key("period", list(std::array{stand.period->x, stand.period->y}));
     if (treeless) return;
@@ -255,7 +265,6 @@ class Writer {
   }
 
   void writeCamera(const Camera& camera) {
-    table("camera");
     key("target", list(camera.target));
     key("elevation_deg", degrees(camera.elevation));
     key("azimuth_deg", degrees(camera.azimuth));

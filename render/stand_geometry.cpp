@@ -133,6 +133,7 @@ void requireModelled(const Scene& scene) {
                        "take any)");
   require(scene.sun().up(), from + "sun.zenith_deg", glm::degrees(scene.sun().zenith),
           "in [0, 89.9] for the models' irradiance of leaves: above the horizon");
+  require(!stand.trees.empty(), from + "number of trees in [stand]", stand.trees.size(), "at least 1");
   requireDrawable(scene);
 }
 

@@ -164,6 +164,12 @@ TEST_F(SceneFile, NamesWhatIsWrong) {
   write("tree.obj", kSquare);
   EXPECT_EQ(refusal("[sun]\nzenith_deg = 195\n"), "s.toml:2: sun.zenith_deg = 195: must be in [0, 180]");
   EXPECT_EQ(refusal("[sun]\nzenith_deg = nan\n"), "s.toml:2: sun.zenith_deg = nan: must be in [0, 180]");
+  EXPECT_EQ(refusal("[[saved_camera]]\nwidth = 3\n"), "s.toml:1: saved_camera.name = \"\": must be 1 to 64 characters");
+  EXPECT_EQ(refusal("[[saved_camera]]\nname = \"a\"\n[[saved_camera]]\nname = \"a\"\n"),
+            "s.toml:3: saved_camera.name = \"a\": must differ from that of the other ones");
+  EXPECT_EQ(refusal("[[saved_camera]]\nname = \"a\"\nwidth = 0\n"),
+            "s.toml:3: saved_camera.width = 0: must be a whole number, 1 to 8192");
+  EXPECT_EQ(refusal("saved_camera = 3\n"), "s.toml:1: saved_camera: must be a [[saved_camera]] for each");
   EXPECT_EQ(refusal("[camera]\nfield_of_view_deg = 0.05\n"),
             "s.toml:2: camera.field_of_view_deg = 0.05: must be 0 or in [0.1, 150]");
   EXPECT_EQ(refusal("[sun]\nzenit = 1\n"), "s.toml:2: unknown key \"zenit\" in [sun]; see: sunfleck --help scene");

@@ -100,6 +100,7 @@ void expectSame(const Scene& a, const Scene& b) {
   sky.image = a.sky.image;
   EXPECT_EQ(a.sky, sky);
   EXPECT_EQ(a.camera, b.camera);
+  EXPECT_EQ(a.saved_cameras, b.saved_cameras);
 }
 
 // A number in a range with random digits, at times one of its ends.
@@ -116,6 +117,16 @@ int drawnCount(Random& random, int most) {
 }
 
 constexpr float kPi = std::numbers::pi_v<float>;
+
+Camera drawnCamera(Random& random) {
+  return {.target = {drawn(random, -1e6f, 1e6f), drawn(random, -5.f, 5.f), drawn(random, -1e-3f, 1e-3f)},
+          .elevation = drawn(random, -kPi / 2.f, kPi / 2.f),
+          .azimuth = drawn(random, -2.f * kPi, 2.f * kPi),
+          .half_width = drawn(random, 1e-6f, 1e6f),
+          .field_of_view = random.uniform() < 0.5f ? 0.f : drawn(random, 0.002f, 2.6f),
+          .width = drawnCount(random, 8192),
+          .height = drawnCount(random, 8192)};
+}
 
 // Any scene that a file can tell, of the square of leaf and wood.
 Scene drawnScene(std::uint64_t seed, const fs::path& folder) {
@@ -176,15 +187,10 @@ Scene drawnScene(std::uint64_t seed, const fs::path& folder) {
     scene.sky.turbidity = 1.7 + 4. * double{random.uniform()};
     scene.sky.coloured_sun = random.uniform() < 0.5f;
   }
-  if (random.uniform() < 0.8f)
-    scene.camera =
-        Camera{.target = {drawn(random, -1e6f, 1e6f), drawn(random, -5.f, 5.f), drawn(random, -1e-3f, 1e-3f)},
-               .elevation = drawn(random, -kPi / 2.f, kPi / 2.f),
-               .azimuth = drawn(random, -2.f * kPi, 2.f * kPi),
-               .half_width = drawn(random, 1e-6f, 1e6f),
-               .field_of_view = random.uniform() < 0.5f ? 0.f : drawn(random, 0.002f, 2.6f),
-               .width = drawnCount(random, 8192),
-               .height = drawnCount(random, 8192)};
+  if (random.uniform() < 0.8f) scene.camera = drawnCamera(random);
+  for (int i = drawnCount(random, 4); --i > 0;)
+    scene.saved_cameras.push_back({"camera \"" + std::to_string(i) + "\"", drawnCamera(random)});
+  if (random.uniform() < 0.1f) scene.stand = {.trees = {}};
   return scene;
 }
 
@@ -278,7 +284,7 @@ TEST_F(SceneWriter, RefusesWhatAFileCannotTell) {
   Scene scene = readScene((folder_ / "square.obj").string());
   scene.stand.trees[0].position.z = 1.f;
   EXPECT_NE(refusal(scene).find("above or below the ground"), std::string::npos);
-  scene.stand.trees.clear();
+  scene.kinds[0].mesh = std::make_shared<const TreeMesh>();
   EXPECT_NE(refusal(scene).find("has neither trees nor media"), std::string::npos);
   scene = readScene((folder_ / "square.obj").string());
   scene.suns[0].azimuth = std::numeric_limits<float>::quiet_NaN();

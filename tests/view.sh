@@ -220,6 +220,55 @@ awk '/^    # turn the sun/ { shows = 1 } shows && !/^    / { exit } shows' \
   "$tests/../docs/VIEWER.md" | sed 's/^    //; s/^samples 16/panels off\nresize 90 60\nsamples 2/; s/0\.05 /0.5 /' >shown.txt
 grep -q '^save scene.toml' shown.txt || fail "docs/VIEWER.md: no script is found"
 runs shown.txt trees.toml
+# A tree turned, an image as the sky, a camera saved, the exact model; then no tree at all, also by night and by Monte
+# Carlo. The scene that is saved holds all of it.
+"$program" render trees.toml --size 32 16 -o sky.exr >/dev/null 2>stderr.txt || fail "a sky: $(cat stderr.txt)"
+cat >none.txt <<'END'
+panels off
+samples 2
+resize 80 60
+camera save "from here"
+camera orbit 70 20
+select 1
+turn 90
+sky image sky.exr 30
+model pp
+wait ready
+expect recomputed light_maps 2      # of the trees that are not turned, of the one that is
+screenshot exact.png
+exr exact.exr
+select 1
+delete
+select 2
+delete
+select 1
+delete
+expect trees 0
+wait ready
+screenshot none.png
+save none.toml
+compare with reference
+compare flip
+wait reference 0.5
+screenshot none_reference.png
+compare off
+sky none
+sun 120 0
+wait ready
+screenshot none_night.png
+undo 3
+expect trees 1
+undo 2
+expect trees 3
+wait ready
+END
+runs none.txt trees.toml
+printf 'panels off\nsamples 2\nresize 80 60\nmodel pp\nwait ready\nscreenshot none_opened.png\ncamera load "from here"\n' >open.txt
+runs open.txt none.toml
+cmp -s none.png none_opened.png || fail "the saved scene without trees looks different"
+"$program" render none.toml --saved-camera "from here" -o none_rendered.png >/dev/null 2>stderr.txt ||
+  fail "render of a scene without trees: $(cat stderr.txt)"
+for file in exact.exr exact.png none_night.png none_reference.png; do [ -s $file ] || fail "no $file"; done
 
 # Monte Carlo beside a model, the same on every run.
 for run in one two; do
@@ -231,6 +280,8 @@ cmp -s one.png two.png || fail "Monte Carlo differs from run to run"
 
 view trees.toml --frames 3 >stdout.txt 2>stderr.txt || fail "--frames 3: $(cat stderr.txt)"
 stops 2 'wrong.txt:2: sun ZENITH = "200": must be in [0, 180]' 'undo\nsun 200 0\n'
+stops 2 'wrong.txt:1: no.hdr' 'sky image no.hdr\n'
+stops 2 'wrong.txt:2: no.obj' '\nkind no.obj\n\n'
 stops 2 'wrong.txt:1: tree = 9: must be' 'select 9\n'
 stops 2 'wrong.txt:1: model = "none": must be one of ss' 'model none\n'
 stops 2 'wrong.txt:1: x.gif' 'screenshot x.gif\n'
@@ -250,6 +301,19 @@ if [ "$way" = window ]; then
   for file in start turned sun night wipe difference; do
     cmp -s $file.png unseen/$file.png || fail "$file.png differs without a window"
   done
+  # One line when the display goes away.
+  Xvfb -displayfd 3 -screen 0 640x480x24 3>display.txt >/dev/null 2>&1 &
+  server=$!
+  for _ in $(seq 100); do [ -s display.txt ] && break; sleep 0.1; done
+  DISPLAY=:$(cat display.txt) "$program" view trees.toml >stdout.txt 2>stderr.txt </dev/null &
+  viewer=$!
+  for _ in $(seq 100); do grep -q libX11 /proc/$viewer/maps && break; sleep 0.1; done
+  sleep 1
+  kill $server
+  wait $viewer
+  [ $? -eq 1 ] || fail "a lost display is no failure"
+  [ "$(cat stderr.txt)" = "sunfleck: failed: the display is lost: its server has ended or has closed the connection" ] ||
+    fail "a lost display: $(cat stderr.txt)"
   env -u DISPLAY "$program" view trees.toml --frames 1 >stdout.txt 2>stderr.txt
   [ $? -eq 1 ] || fail "no display is no failure"
   grep -q "needs a display" stderr.txt || fail "no display: $(cat stderr.txt)"

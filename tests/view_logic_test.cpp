@@ -34,19 +34,17 @@ bool same(const Document& a, const Document& b) {
   for (std::size_t i = 0; kinds && i < a.scene.kinds.size(); ++i)
     kinds = a.scene.kinds[i].name == b.scene.kinds[i].name && a.scene.kinds[i].mesh == b.scene.kinds[i].mesh &&
             same(a.scene.kinds[i].leaf, b.scene.kinds[i].leaf);
-  bool cameras = a.cameras.size() == b.cameras.size();
-  for (std::size_t i = 0; cameras && i < a.cameras.size(); ++i)
-    cameras = a.cameras[i].name == b.cameras[i].name && a.cameras[i].camera == b.cameras[i].camera;
-  return kinds && cameras && a.scene.stand == b.scene.stand && a.scene.sky == b.scene.sky &&
-         a.scene.ground_albedo == b.scene.ground_albedo && a.scene.sun().zenith == b.scene.sun().zenith &&
-         a.model == b.model && a.effort.cells == b.effort.cells && a.selected == b.selected;
+  return kinds && a.scene.saved_cameras == b.scene.saved_cameras && a.scene.stand == b.scene.stand &&
+         a.scene.sky == b.scene.sky && a.scene.ground_albedo == b.scene.ground_albedo &&
+         a.scene.sun().zenith == b.scene.sun().zenith && a.model == b.model && a.effort.cells == b.effort.cells &&
+         a.selected == b.selected;
 }
 
 SceneEdit randomEdit(const Document& document, Random& random) {
   const auto place = [&] { return glm::vec3(20.f * random.uniform(), 20.f * random.uniform(), 0.f); };
   const std::size_t trees = document.scene.stand.trees.size();
   const auto tree = static_cast<std::size_t>(random.uniform() * static_cast<float>(trees));
-  switch (static_cast<int>(9.f * random.uniform())) {
+  switch (static_cast<int>(10.f * random.uniform())) {
     case 0:
       return SetSuns{{Sun{.zenith = random.uniform()}}};
     case 1:
@@ -58,11 +56,15 @@ SceneEdit randomEdit(const Document& document, Random& random) {
     case 4:
       return SetModel{kModels[static_cast<std::size_t>(3.f * random.uniform())]};
     case 5:
-      return MoveTree{tree, place()};
+      if (trees > 0) return MoveTree{tree, place()};
+      [[fallthrough]];
     case 6:
       return SaveCamera{{std::string(1, static_cast<char>('a' + 3.f * random.uniform())), {}}};
     case 7:
-      if (trees > 1) return RemoveTrees{{tree}};
+      if (trees > 0) return RemoveTrees{{tree}};
+      [[fallthrough]];
+    case 8:
+      if (trees > 0) return TurnTree{tree, random.uniform()};
       [[fallthrough]];
     default:
       return AddTrees{{Placement{.position = place()}, Placement{.position = place()}}};
@@ -153,7 +155,8 @@ TEST(EditHistory, ChangesNothingByAWrongEdit) {
       AddTrees{{Placement{.kind = 1}}},
       AddTrees{std::vector<Placement>(100)},  // a heap in one place
       RemoveTrees{{3}},
-      RemoveTrees{{0}},
+      TurnTree{1, 0.f},
+      TurnTree{0, nan},
       SaveCamera{{"", {}}},
       ForgetCamera{"none"},
   };

@@ -1,27 +1,18 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <vector>
 
-#include "render/camera.hpp"
 #include "render/model.hpp"
 #include "render/scene.hpp"
 #include "render/stand_geometry.hpp"
 
 namespace sunfleck::view {
 
-struct SavedCamera {
-  std::string name;
-  Camera camera;
-};
-
 // What the viewer edits, and undoes as one.
 struct Document {
   Scene scene;
   Model model = Model::sppg;
   GeometryEffort effort{.light_resolution = 1024};
-  std::vector<SavedCamera> cameras;     // names differ
   std::optional<std::size_t> selected;  // one of the stand's trees
 };
 

@@ -43,6 +43,7 @@ void Panels::drawCompare(Session& session, const FrameReport& report) {
     for (const Model model : kModels) {
       ImGui::TableNextColumn();
       if (ImGui::RadioButton(nameOf(model).c_str(), look.other == model)) look.other = model;
+      tip(aboutOf(model));
     }
     ImGui::EndTable();
   }
@@ -64,6 +65,7 @@ void Panels::drawCompare(Session& session, const FrameReport& report) {
   if (look.comparison == Comparison::difference) {
     bool own = look.difference_scale == 0.f;
     if (ImGui::Checkbox("scale of the picture", &own)) look.difference_scale = own ? 0.f : report.difference_scale;
+    tip("The last colour is that of the largest differences, but for half a percent of the pixels");
     if (!own) {
       ImGui::DragFloat("scale", &look.difference_scale, 0.001f, 1e-5f, 100.f, "%.4f", ImGuiSliderFlags_Logarithmic);
       tip("Difference that has the last colour [1/sr]");
@@ -152,7 +154,16 @@ void Panels::drawTimes(Session& session, const FrameReport& report) {
     ImGui::EndTable();
   }
   ImGui::TextDisabled("%s", report.renderer.c_str());
-  heading(fmt::format("Computed anew by the last change: {:.0f} ms", 1e3 * session.lastSeconds()).c_str());
+  heading("Computed anew by the last change");
+  if (beginRows("cost")) {
+    row("time", fmt::format("{:.1f} ms", 1e3 * session.lastSeconds()));
+    tip("In the background, by the clock");
+    const double all = session.preparedSeconds();
+    row("of preparing all",
+        all > 0. ? fmt::format("{:.1f} % of {:.0f} ms", 100. * session.lastSeconds() / all, 1e3 * all) : "-");
+    tip("Of the time in which the whole stand was prepared, when its scene was read or the quality changed");
+    ImGui::EndTable();
+  }
   if (ImGui::BeginTable("products", 4, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) {
     for (const char* column : {"product", "made", "adjusted", "ms"}) ImGui::TableSetupColumn(column);
     ImGui::TableHeadersRow();

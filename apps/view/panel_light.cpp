@@ -66,6 +66,7 @@ void Panels::drawSun(Session& session) {
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (i > 0) ImGui::SameLine();
     if (ImGui::RadioButton(fmt::format("{}", i + 1).c_str(), sun == i)) sun = i;
+    tip("The sun that is changed here");
   }
   ImGui::SameLine();
   ImGui::BeginDisabled(suns.size() >= kMostSuns);
@@ -127,28 +128,49 @@ void Panels::drawSun(Session& session) {
   }
 }
 
+void Panels::drawSkyImage(Session& session, const SceneSky& sky) {
+  ImGui::InputText("file", &sky_file);
+  tip("A panorama in latitude and longitude, its zenith on top: .hdr or .exr");
+  const bool read = ImGui::Button("Read the image");
+  tip("In the background; the image becomes the sky");
+  bool turned = false;
+  if (sky.kind == SceneSky::Kind::image) {
+    if (!ImGui::IsAnyItemActive()) sky_rotation = glm::degrees(sky.rotation);
+    ImGui::SliderFloat("rotation", &sky_rotation, -180.f, 180.f, "%.0f\u00b0");
+    turned = ImGui::IsItemDeactivatedAfterEdit();
+    tip("Azimuth of the image's middle column [degrees]");
+  }
+  if (!read && !turned) return;
+  chooses_image = false;
+  session.attempt([&] { session.setSkyImage(read ? sky_file : sky.file, glm::radians(turned ? sky_rotation : 0.f)); });
+}
+
 void Panels::drawSky(Session& session) {
   using Kind = SceneSky::Kind;
   heading("Sky");
   SceneSky sky = session.document().scene.sky;
-  static constexpr std::array<std::pair<Kind, const char*>, 4> kKinds{{{Kind::none, "none"},
+  static constexpr std::array<std::pair<Kind, const char*>, 5> kKinds{{{Kind::none, "none"},
                                                                        {Kind::uniform, "uniform"},
                                                                        {Kind::overcast, "overcast"},
-                                                                       {Kind::preetham, "Preetham, clear"}}};
+                                                                       {Kind::preetham, "Preetham, clear"},
+                                                                       {Kind::image, "image"}}};
   const char* name = "image";
   for (const auto& [kind_of_sky, text] : kKinds)
-    if (sky.kind == kind_of_sky) name = text;
+    if (sky.kind == kind_of_sky && !chooses_image) name = text;
   if (ImGui::BeginCombo("kind", name)) {
     for (const auto& [kind_of_sky, text] : kKinds)
-      if (ImGui::Selectable(text, sky.kind == kind_of_sky) && sky.kind != kind_of_sky) {
+      if (ImGui::Selectable(text, name == text) && name != text) {
+        chooses_image = kind_of_sky == Kind::image;
+        if (chooses_image) continue;  // the file must be named first
         sky = SceneSky{.kind = kind_of_sky, .turbidity = sky.turbidity};
-        if (kind_of_sky == Kind::uniform || kind_of_sky == Kind::overcast) sky.irradiance = glm::dvec3(0.2);
+        if (kind_of_sky == Kind::uniform || kind_of_sky == Kind::overcast) sky.irradiance = glm::dvec3(kSkyIrradiance);
         session.attempt([&] { session.edit(SetSky{sky}); });
       }
     ImGui::EndCombo();
   }
   tip("What shines beside the suns. Preetham's clear sky is lit by the first sun");
-  if (sky.kind == Kind::none) return;
+  if (chooses_image || sky.kind == Kind::image) drawSkyImage(session, sky);
+  if (sky.kind == Kind::none || chooses_image) return;
   bool edited = false;
   if (sky.kind == Kind::preetham) {
     auto turbidity = static_cast<float>(sky.turbidity);
@@ -162,7 +184,7 @@ void Panels::drawSky(Session& session) {
     edited |= changed(ImGui::Checkbox("coloured sun", &sky.coloured_sun), session);
     tip("The sun's light takes its colour behind that air");
   } else {
-    glm::vec3 irradiance = sky.irradiance.value_or(glm::dvec3(0.2));
+    glm::vec3 irradiance = sky.irradiance.value_or(glm::dvec3(kSkyIrradiance));
     if (changed(ImGui::DragFloat3("irradiance##sky", &irradiance.x, 0.005f, 0.f, 10.f, "%.3f"), session)) {
       sky.irradiance = irradiance;
       edited = true;

@@ -5,7 +5,6 @@
 #include "apps/view/panels.hpp"
 
 namespace sunfleck::view {
-namespace {
 
 const char* aboutOf(Model model) {
   switch (model) {
@@ -24,8 +23,6 @@ const char* aboutOf(Model model) {
   }
   return "";
 }
-
-}  // namespace
 
 void Panels::drawLeaf(Session& session) {
   const Scene& scene = session.document().scene;
@@ -95,7 +92,7 @@ void Panels::drawModel(Session& session) {
   }
   tip("All light, or that of one scattering, or depth, thickness and G of what is seen");
   ImGui::SliderFloat("exposure", &look.display.exposure, 0.05f, 100.f, "%.2f", ImGuiSliderFlags_Logarithmic);
-  tip("Factor from radiance to brightness");
+  tip("Factor from radiance [1/sr] to brightness");
   if (ImGui::BeginCombo("tone", nameOf(look.display.curve).c_str())) {
     for (const ToneCurve tone : kTones)
       if (ImGui::Selectable(nameOf(tone).c_str(), tone == look.display.curve)) look.display.curve = tone;
@@ -109,6 +106,7 @@ void Panels::drawModel(Session& session) {
   bool perspective = session.camera.perspective();
   if (ImGui::Checkbox("perspective", &perspective))
     session.camera = perspective ? inPerspective(session.camera, kWideView) : orthographic(session.camera);
+  tip("As an eye sees it; else all lines of sight are parallel");
   if (perspective) {
     float degrees = session.camera.field_of_view * 57.29578f;
     if (ImGui::SliderFloat("field of view", &degrees, 5.f, 120.f, "%.0f\u00b0"))

@@ -2,6 +2,9 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <cmath>
+#include <glm/trigonometric.hpp>
+
 #include "apps/view/detail/widgets.hpp"
 #include "apps/view/panels.hpp"
 #include "plants/species.hpp"
@@ -51,12 +54,14 @@ void Panels::drawScene(Session& session) {
         if (ImGui::Selectable(name.c_str(), name == new_kind)) new_kind = name;
       ImGui::EndCombo();
     }
+    tip("That is grown by rules");
     ImGui::InputText("or a file", &new_kind);
     tip("A tree's file: .obj or .ply, in metres");
     ImGui::InputInt("seed", &new_seed);
     tip("Of the random numbers by which a species grows");
     if (ImGui::Button("Grow or read"))
       session.attempt([&] { session.addKind(new_kind, static_cast<std::uint64_t>(std::max(new_seed, 1))); });
+    tip("In the background; a tree of it is set where the camera looks");
     ImGui::TreePop();
   }
   drawTrees(session);
@@ -81,7 +86,9 @@ void Panels::drawTrees(Session& session) {
     tip("No tree stands nearer to another than this [m]");
   }
 
-  heading(scene.stand.trees.size() == 1 ? "1 tree" : fmt::format("{} trees", scene.stand.trees.size()).c_str());
+  heading(scene.stand.trees.empty()       ? "no tree"
+          : scene.stand.trees.size() == 1 ? "1 tree"
+                                          : fmt::format("{} trees", scene.stand.trees.size()).c_str());
   if (const auto selected = session.document().selected) {
     const Placement& tree = scene.stand.trees[*selected];
     ImGui::Text("tree %zu, %s", *selected + 1, scene.kindOf(tree).name.c_str());
@@ -89,6 +96,16 @@ void Panels::drawTrees(Session& session) {
     if (changed(ImGui::DragFloat2("x, y", &place.x, 0.02f, -1e6f, 1e6f, "%.2f m"), session))
       session.attempt([&] { session.edit(MoveTree{*selected, place}, gesture); });
     tip("Where it stands [m]; drag, or double-click to type");
+    // Trees turned alike share their maps, so that it goes by steps.
+    constexpr int kStep = 15;
+    int steps = static_cast<int>(std::lround(glm::degrees(tree.rotation) / kStep));
+    const std::string degrees = fmt::format("{}\u00b0", kStep * steps);
+    if (changed(ImGui::SliderInt("rotation", &steps, -180 / kStep, 180 / kStep, degrees.c_str()), session))
+      session.attempt([&] {
+        session.edit(TurnTree{*selected, glm::radians(static_cast<float>(kStep * steps))}, gesture);
+      });
+    tip("About its stem, counter-clockwise from above [degrees]. Each direction has maps of its own, at most 64 in "
+        "all");
     const float beside = 1.02f * leafBounds(*scene.kindOf(tree).mesh).size().x;
     if (ImGui::Button("Copy")) session.attempt([&] { session.copySelected({beside, 0.f}); });
     tip("A tree of the same kind beside it, towards +x");
@@ -98,7 +115,9 @@ void Panels::drawTrees(Session& session) {
   } else {
     ImGui::TextDisabled("none is selected");
   }
-  if (ImGui::BeginChild("trees", {0.f, 0.f}, true)) {
+  constexpr float kLeastLines = 6.f;
+  const float least = kLeastLines * ImGui::GetTextLineHeightWithSpacing();
+  if (ImGui::BeginChild("trees", {0.f, std::max(least, ImGui::GetContentRegionAvail().y)}, true)) {
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(session.document().scene.stand.trees.size()));
     while (clipper.Step())

@@ -12,8 +12,11 @@ namespace sunfleck::view {
 namespace {
 
 constexpr float kPanelWidth = 21.f, kStatusHeight = 1.9f;  // in heights of a letter
-// Narrower windows show no panel at their right, or none at all [heights of a letter].
-constexpr float kBothPanels = 60.f, kOnePanel = 40.f;
+// Narrower windows show all panels at their left, or none at all [heights of a letter].
+constexpr float kBothSides = 80.f, kOneSide = 40.f;
+
+// What takes a moment is told; what is done at once does not flicker [s].
+constexpr double kMoment = 0.15;
 
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                                     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoSavedSettings |
@@ -53,9 +56,9 @@ std::pair<glm::ivec2, glm::ivec2> Panels::draw(glm::ivec2 window, Session& sessi
   const auto width_in_letters = static_cast<float>(window.x) / letter;
   const float panel = std::round(kPanelWidth * letter);
   int from = 0, to = window.x;
-  const auto draw_side = [&](const char* name, float x, bool is_left) {
-    ImGui::SetNextWindowPos({x, 0.f});
-    ImGui::SetNextWindowSize({panel, std::max(height, 1.f)});
+  const auto draw_side = [&](const char* name, ImVec2 corner, float high, bool is_left) {
+    ImGui::SetNextWindowPos(corner);
+    ImGui::SetNextWindowSize({panel, std::max(high, 1.f)});
     if (ImGui::Begin(name, nullptr, kFixed) && ImGui::BeginTabBar("tabs")) {
       bool& choose = is_left ? choose_left : choose_right;
       Tab& active = is_left ? left : right;
@@ -75,15 +78,16 @@ std::pair<glm::ivec2, glm::ivec2> Panels::draw(glm::ivec2 window, Session& sessi
     }
     ImGui::End();
   };
-  if (session.loaded() && width_in_letters > kOnePanel && height > 0.f) {
-    draw_side("left", 0.f, true);
+  const bool both_sides = width_in_letters >= kBothSides;
+  if (session.loaded() && width_in_letters > kOneSide && height > 0.f) {
+    const float left_height = both_sides ? height : std::round(0.55f * height);
+    draw_side("left", {0.f, 0.f}, left_height, true);
     from = static_cast<int>(panel);
+    if (both_sides) to = window.x - static_cast<int>(panel);
+    draw_side("right", both_sides ? ImVec2(static_cast<float>(to), 0.f) : ImVec2(0.f, left_height),
+              both_sides ? height : height - left_height, false);
   }
-  if (session.loaded() && width_in_letters > kBothPanels && height > 0.f) {
-    draw_side("right", static_cast<float>(window.x) - panel, false);
-    to = window.x - static_cast<int>(panel);
-  }
-  drawStatus(window, status, session, report);
+  drawStatus(window, status, session, report, requests);
   return {glm::ivec2(from, 0), glm::max(glm::ivec2(to - from, static_cast<int>(height)), glm::ivec2(1))};
 }
 
@@ -118,14 +122,18 @@ void Panels::drawTab(Tab tab, Session& session, const FrameReport& report, Reque
   ImGui::PopItemWidth();
 }
 
-void Panels::drawStatus(glm::ivec2 window, float height, Session& session, const FrameReport& report) {
+void Panels::drawStatus(glm::ivec2 window, float height, Session& session, const FrameReport& report,
+                        Requests& requests) {
   ImGui::SetNextWindowPos({0.f, static_cast<float>(window.y) - height});
   ImGui::SetNextWindowSize({static_cast<float>(window.x), height});
   ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.07f, 0.08f, 0.075f, 1.f));
   if (ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar)) {
-    const StandWorker::State work = session.work();
-    // What takes a moment is told; what is done at once does not flicker.
-    constexpr double kMoment = 0.15;
+    StandWorker::State work = session.work();
+    if (report.exr_done) {
+      work = {.busy = true, .done = *report.exr_done, .what = "drawing an EXR", .seconds = kMoment + 1.};
+    } else if (const auto writes = session.writes(); writes && !work.busy) {
+      work = {.busy = true, .done = 1., .what = *writes, .seconds = kMoment + 1.};
+    }
     if (work.busy && work.seconds > kMoment) {
       ImGui::AlignTextToFramePadding();
       ImGui::TextUnformatted(work.what.c_str());
@@ -134,7 +142,8 @@ void Panels::drawStatus(glm::ivec2 window, float height, Session& session, const
           work.done > 0. ? fmt::format("{:.0f} %", 100. * work.done) : fmt::format("{:.1f} s", work.seconds);
       ImGui::ProgressBar(static_cast<float>(work.done), {10.f * ImGui::GetFontSize(), 0.f}, share.c_str());
       ImGui::SameLine();
-      if (session.loaded() && ImGui::SmallButton("cancel")) session.cancel();
+      if (session.loaded() && ImGui::SmallButton("cancel")) requests.cancel = true;
+      tip("Ends it; what is drawn stays as it is");
       ImGui::SameLine();
     }
     if (session.messageIsError())

@@ -47,11 +47,13 @@ struct FrameReport {
   bool reference_runs = false, reference_finished = false;
   double reference_noise = 0., reference_seconds = 0., reference_done = 0.;
   std::string reference_failure;
+  std::optional<double> exr_done;  // share of an EXR's frames, while it is drawn
 };
 
 // What the panels ask the viewer for.
 struct Requests {
-  std::optional<std::filesystem::path> screenshot, window_screenshot, exr, scene;
+  std::optional<std::filesystem::path> screenshot, exr, scene;
+  bool cancel = false;  // what is under way
 };
 
 // The panels' own state.
@@ -68,7 +70,9 @@ struct Panels {
   std::string new_kind = "maple", date = "2026-06-21", time = "12:00", camera_name = "view";
   int new_seed = 1;
   float latitude = 48.f, longitude = 9.f;
-  std::string picture_file = "view.png", exr_file = "view.exr", scene_file = "view.toml";
+  std::string picture_file = "view.png", exr_file = "view.exr", scene_file = "view.toml", sky_file = "sky.hdr";
+  bool chooses_image = false;  // as the sky, but has not read it yet
+  float sky_rotation = 0.f;    // [degrees]
 
   void show(Tab tab);
   // Draws all for a window of this size; gives the part of it that is left for the picture: corner and size [pixel].
@@ -77,12 +81,13 @@ struct Panels {
 
  private:
   void drawTab(Tab tab, Session& session, const FrameReport& report, Requests& requests);
-  void drawStatus(glm::ivec2 window, float height, Session& session, const FrameReport& report);
+  void drawStatus(glm::ivec2 window, float height, Session& session, const FrameReport& report, Requests& requests);
   void drawScene(Session& session);
   void drawTrees(Session& session);
   void drawLight(Session& session);
   void drawSun(Session& session);
   void drawSky(Session& session);
+  void drawSkyImage(Session& session, const SceneSky& sky);
   void drawLeaf(Session& session);
   void drawModel(Session& session);
   void drawCompare(Session& session, const FrameReport& report);
@@ -92,6 +97,9 @@ struct Panels {
   // After an item that edits: whether it did; a new gesture begins where a person took hold of it.
   bool changed(bool changed, Session& session);
 };
+
+// What a model does, for people.
+const char* aboutOf(Model model);
 
 // The colour of a difference, -1 .. 1: blue where B is brighter, red where A is.
 glm::vec3 differenceColour(float difference);

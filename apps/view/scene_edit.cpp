@@ -15,7 +15,6 @@ constexpr float kFarthest = 1e6f;        // of a tree from the origin [m]
 constexpr float kMostIrradiance = 10.f;  // of a sun, as in scene files
 constexpr double kMostSkyIrradiance = 1000.;
 constexpr int kMostSampleDirections = 200, kMostResolution = 4096, kMostCells = 64;
-constexpr std::size_t kLongestName = 64;
 
 void requireShares(const glm::vec3& values, const std::string& what) {
   for (int band = 0; band < kBands; ++band)
@@ -89,6 +88,12 @@ struct Apply {
     requirePlace(edit.position);
     document.scene.stand.trees[edit.tree].position = edit.position;
   }
+  void operator()(const TurnTree& edit) const {
+    requireTree(document, edit.tree);
+    require(std::isfinite(edit.rotation), "rotation of the tree [rad]", edit.rotation, "finite");
+    // One of equal trees must be turned to the bit alike, to share their maps.
+    document.scene.stand.trees[edit.tree].rotation = std::remainder(edit.rotation, 2.f * std::numbers::pi_v<float>);
+  }
   void operator()(const AddTrees& edit) const {
     require(!edit.trees.empty(), "number of trees to add", edit.trees.size(), "at least 1");
     for (const Placement& tree : edit.trees) {
@@ -105,7 +110,6 @@ struct Apply {
     std::ranges::sort(removed, std::greater{});
     removed.erase(std::unique(removed.begin(), removed.end()), removed.end());
     for (const std::size_t tree : removed) requireTree(document, tree);
-    if (removed.size() == trees.size()) throw InvalidInput("the last tree of the stand cannot be deleted");
     for (const std::size_t tree : removed) trees.erase(trees.begin() + static_cast<std::ptrdiff_t>(tree));
     document.selected.reset();
   }
@@ -122,18 +126,19 @@ struct Apply {
     document.selected = document.scene.stand.trees.size() - 1;
   }
   void operator()(const SaveCamera& edit) const {
-    require(!edit.camera.name.empty() && edit.camera.name.size() <= kLongestName, "name of the camera",
+    require(!edit.camera.name.empty() && edit.camera.name.size() <= kLongestCameraName, "name of the camera",
             edit.camera.name, "1 to 64 characters");
-    const auto found = std::ranges::find(document.cameras, edit.camera.name, &SavedCamera::name);
-    if (found == document.cameras.end())
-      document.cameras.push_back(edit.camera);
+    const auto found = std::ranges::find(document.scene.saved_cameras, edit.camera.name, &SavedCamera::name);
+    if (found == document.scene.saved_cameras.end())
+      document.scene.saved_cameras.push_back(edit.camera);
     else
       found->camera = edit.camera.camera;
   }
   void operator()(const ForgetCamera& edit) const {
-    const auto found = std::ranges::find(document.cameras, edit.name, &SavedCamera::name);
-    if (found == document.cameras.end()) throw InvalidInput("camera \"" + edit.name + "\": must be a saved one");
-    document.cameras.erase(found);
+    const auto found = std::ranges::find(document.scene.saved_cameras, edit.name, &SavedCamera::name);
+    if (found == document.scene.saved_cameras.end())
+      throw InvalidInput("camera \"" + edit.name + "\": must be a saved one");
+    document.scene.saved_cameras.erase(found);
   }
 };
 
@@ -145,6 +150,7 @@ struct Name {
   const char* operator()(const SetModel&) const { return "model"; }
   const char* operator()(const SetEffort&) const { return "quality"; }
   const char* operator()(const MoveTree&) const { return "move tree"; }
+  const char* operator()(const TurnTree&) const { return "turn tree"; }
   const char* operator()(const AddTrees& edit) const { return edit.trees.size() == 1 ? "add tree" : "paint trees"; }
   const char* operator()(const RemoveTrees& edit) const {
     return edit.trees.size() == 1 ? "delete tree" : "delete trees";

@@ -34,11 +34,15 @@ struct MoveTree {
   std::size_t tree;
   glm::vec3 position;  // [m]
 };
+struct TurnTree {
+  std::size_t tree;
+  float rotation;  // counter-clockwise from above [rad]; as many maps are made as there are different ones
+};
 struct AddTrees {
   std::vector<Placement> trees;  // not empty; the last becomes the selected one
 };
 struct RemoveTrees {
-  std::vector<std::size_t> trees;  // of the stand, each once, not all of them
+  std::vector<std::size_t> trees;  // of the stand, each once
 };
 struct AddKind {
   TreeKind kind;       // its name is made to differ from the others
@@ -50,7 +54,7 @@ struct SaveCamera {
 struct ForgetCamera {
   std::string name;
 };
-using SceneEdit = std::variant<SetSuns, SetSky, SetGround, SetOptics, SetModel, SetEffort, MoveTree, AddTrees,
+using SceneEdit = std::variant<SetSuns, SetSky, SetGround, SetOptics, SetModel, SetEffort, MoveTree, TurnTree, AddTrees,
                                RemoveTrees, AddKind, SaveCamera, ForgetCamera>;
 
 // What was done, for people: "move tree".

@@ -62,11 +62,40 @@ Session::Session(std::string name, std::function<Document()> read)
   worker_.run("reading " + name, [read = std::move(read), into = read_] { *into = read(); });
 }
 
+bool Session::needsExact() const {
+  return document().model == Model::pp || look.other == Model::pp;
+}
+
+void Session::write(const std::filesystem::path& file, std::function<void()> writing) {
+  writings_.push_back({file, std::async(std::launch::async, std::move(writing))});
+}
+
+std::optional<std::string> Session::writes() const {
+  return writings_.empty() ? std::nullopt : std::optional("writing " + writings_.front().file.string());
+}
+
+void Session::endWritings() {
+  for (std::size_t i = 0; i < writings_.size();) {
+    if (writings_[i].ended.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+      ++i;
+      continue;
+    }
+    Writing writing = std::move(writings_[i]);
+    writings_.erase(writings_.begin() + static_cast<std::ptrdiff_t>(i));
+    attempt([&] {
+      writing.ended.get();
+      say("wrote " + writing.file.string());
+    });
+  }
+}
+
 void Session::advance() {
+  endWritings();
   if (const std::exception_ptr failure = worker_.failure()) {
     if (!loaded()) std::rethrow_exception(failure);
     attempt([&] { std::rethrow_exception(failure); });
     shown_ = wished_;  // what is drawn stays until the next change
+    answered_exact_ = wished_exact_;
   }
   const bool working = worker_.state().busy;
   if (!loaded()) {
@@ -75,12 +104,18 @@ void Session::advance() {
     read_.reset();
     camera = cameraOf(document().scene);
   }
-  if (!grown_.empty() && !worker_.state().busy)  // they have ended, with a kind or without
-    for (const auto& kind : std::exchange(grown_, {}))
-      if (*kind) attempt([&] { edit(AddKind{**kind, {glm::vec2(camera.target), groundHeight()}}); });
-  if (wished_ != history_->stand() + 1) {
-    wished_ = history_->stand() + 1;
-    worker_.wish({.scene = document().scene, .needs = {}, .effort = document().effort, .revision = wished_});
+  if (!prepared_.empty() && !worker_.state().busy)  // all have ended, with an edit or without
+    for (const auto& made : std::exchange(prepared_, {}))
+      if (*made) attempt([&] { edit(**made); });
+  if (const std::uint64_t stand = history_->stand() + 1; wished_ != stand || needsExact() > wished_exact_) {
+    wished_ = stand;
+    answered_exact_ = false;
+    wished_exact_ = needsExact();
+    worker_.wish({.scene = document().scene,
+                  .needs = {},
+                  .effort = document().effort,
+                  .exact = wished_exact_,
+                  .revision = wished_});
   }
 }
 
@@ -130,6 +165,11 @@ void Session::moveSelected(glm::vec2 by, std::uint64_t gesture) {
   edit(MoveTree{tree, document().scene.stand.trees[tree].position + glm::vec3(by, 0.f)}, gesture);
 }
 
+void Session::turnSelected(float by, std::uint64_t gesture) {
+  const std::size_t tree = selectedTree(document());
+  edit(TurnTree{tree, document().scene.stand.trees[tree].rotation + by}, gesture);
+}
+
 void Session::addTree(glm::vec2 place, std::uint32_t kind) {
   edit(AddTrees{{Placement{.position = {place, groundHeight()}, .kind = kind}}});
 }
@@ -170,10 +210,28 @@ void Session::turnSunByDate(std::size_t sun, const std::string& date, const std:
   edit(SetSuns{suns});
 }
 
+void Session::prepare(const std::string& what, std::function<SceneEdit()> make) {
+  const auto into = std::make_shared<std::optional<SceneEdit>>();
+  prepared_.push_back(into);
+  worker_.run(what, [into, make = std::move(make)] { *into = make(); });
+}
+
 void Session::addKind(const std::string& species_or_file, std::uint64_t seed) {
-  grown_.push_back(std::make_shared<std::optional<TreeKind>>());
-  worker_.run("growing " + species_or_file,
-              [species_or_file, seed, into = grown_.back()] { *into = readKind(species_or_file, seed); });
+  prepare("growing " + species_or_file, [=, place = glm::vec3(glm::vec2(camera.target), groundHeight())] {
+    return AddKind{readKind(species_or_file, seed), place};
+  });
+}
+
+void Session::setSkyImage(const std::string& file, float rotation) {
+  SceneSky sky = document().scene.sky;
+  if (sky.kind != SceneSky::Kind::image)
+    sky = {.kind = SceneSky::Kind::image, .irradiance = glm::dvec3(kSkyIrradiance)};
+  sky.file = file;
+  sky.rotation = rotation;
+  prepare("reading " + file, [sky]() mutable {
+    readSkyImage(sky);
+    return SetSky{sky};
+  });
 }
 
 std::uint32_t Session::selectedKind() const {
@@ -209,18 +267,19 @@ void Session::showWholeStand() {
 }
 
 void Session::goTo(const std::string& saved_camera) {
-  const auto found = std::ranges::find(document().cameras, saved_camera, &SavedCamera::name);
-  if (found == document().cameras.end()) throw InvalidInput("camera \"" + saved_camera + "\": must be a saved one");
+  const Camera& found = savedCamera(document().scene, saved_camera);
   const int width = camera.width, height = camera.height;
-  camera = found->camera;
+  camera = found;
   camera.width = width;
   camera.height = height;
 }
 
 void Session::release(const StandWorker::Result& shown) {
   shown_ = shown.made.revision;
+  shown_exact_ = answered_exact_ = shown.made.exact;
   last_costs_ = shown.costs;
   last_seconds_ = shown.seconds;
+  if (shown.from_nothing) prepared_seconds_ = shown.seconds;
   if (recomputed_.size() != last_costs_.size()) {
     recomputed_ = last_costs_;
   } else {
@@ -235,13 +294,24 @@ void Session::release(const StandWorker::Result& shown) {
 }
 
 bool Session::upToDate() const {
-  return loaded() && grown_.empty() && shown_ == history_->stand() + 1;
+  return loaded() && prepared_.empty() && shown_ == history_->stand() + 1 && needsExact() <= answered_exact_;
+}
+
+std::string Session::lastCostText() const {
+  std::string anew;
+  for (const ProductCost& cost : last_costs_)
+    if (const std::size_t count = cost.made + cost.adjusted; count > 0)
+      anew += fmt::format("{}{} {}", anew.empty() ? "" : ", ", count, cost.name);
+  const double share = prepared_seconds_ > 0. ? last_seconds_ / prepared_seconds_ : 0.;
+  return fmt::format("{:.1f} ms, {:.1f} % of the {:.1f} ms that preparing all took: {}", 1e3 * last_seconds_,
+                     100. * share, 1e3 * prepared_seconds_, anew.empty() ? "nothing" : anew);
 }
 
 void Session::cancel() {
   worker_.cancel();
-  grown_.clear();
+  prepared_.clear();
   if (loaded()) shown_ = wished_;  // what is drawn stays until the next change
+  answered_exact_ = wished_exact_;
   say("cancelled");
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,6 +64,7 @@ class Session {
 
   // Edits made of others. All throw InvalidInput.
   void moveSelected(glm::vec2 by, std::uint64_t gesture = 0);  // [m]
+  void turnSelected(float by, std::uint64_t gesture = 0);      // counter-clockwise from above [rad]
   void addTree(glm::vec2 place, std::uint32_t kind);
   void copySelected(glm::vec2 by);
   void removeSelected();
@@ -74,6 +76,9 @@ class Session {
                      double longitude);
   // Grows a species or reads a file in the background, and adds it as a kind.
   void addKind(const std::string& species_or_file, std::uint64_t seed);
+  // Reads a panorama in the background, and makes it the sky. Its brightness stays where it was one before.
+  //   rotation  azimuth of its middle column [rad]
+  void setSkyImage(const std::string& file, float rotation);
   std::uint32_t selectedKind() const;  // of the selected tree, or the first
   float groundHeight() const;          // [m]
 
@@ -89,10 +94,22 @@ class Session {
   void release(const StandWorker::Result& shown);
   // Whether what is drawn is as old as the document.
   bool upToDate() const;
+  // Whether a model can be drawn without waiting: that of the exact solution needs its tables.
+  bool drawable(Model model) const { return model != Model::pp || shown_exact_; }
+  ExactTables& exactTables() { return worker_.tables(); }
   StandWorker::State work() const { return worker_.state(); }
   void cancel();
+
+  // Writes a file in the background; then message() tells of it.
+  void write(const std::filesystem::path& file, std::function<void()> writing);
+  std::optional<std::string> writes() const;  // what is being written
+  // Work of which message() tells the end: growing, reading, writing.
+  bool hasTasks() const { return !prepared_.empty() || !writings_.empty(); }
   const std::vector<ProductCost>& lastCosts() const { return last_costs_; }  // of the last update
   double lastSeconds() const { return last_seconds_; }
+  // Of the first update since the scene was read or its quality changed: all there is, made from nothing.
+  double preparedSeconds() const { return prepared_seconds_; }
+  std::string lastCostText() const;  // for people
   // Members made and adjusted since the counts were last cleared, of each product.
   const std::vector<ProductCost>& recomputed() const { return recomputed_; }
   void clearRecomputed() { recomputed_.clear(); }
@@ -102,13 +119,25 @@ class Session {
   void say(std::string message, bool error = false);
 
  private:
+  struct Writing {
+    std::filesystem::path file;
+    std::future<void> ended;
+  };
+  bool needsExact() const;
+  // Makes an edit in the background, to be done when it is there.
+  void prepare(const std::string& what, std::function<SceneEdit()> make);
+  void endWritings();
+
   std::optional<EditHistory> history_;
-  std::shared_ptr<std::optional<Document>> read_;                // by the worker
-  std::vector<std::shared_ptr<std::optional<TreeKind>>> grown_;  // by the worker, in turn
-  std::uint64_t wished_ = 0, shown_ = 0;                         // stands of the history, one more than its numbers
+  std::shared_ptr<std::optional<Document>> read_;                    // by the worker
+  std::vector<std::shared_ptr<std::optional<SceneEdit>>> prepared_;  // by the worker
+  std::uint64_t wished_ = 0, shown_ = 0;                             // stands of the history, one more than its numbers
+  // With tables of the exact solution; answered: made, failed or cancelled.
+  bool wished_exact_ = false, answered_exact_ = false, shown_exact_ = false;
+  std::vector<Writing> writings_;
   std::uint64_t gesture_ = 0, strokes_ = 0;
   std::vector<ProductCost> last_costs_, recomputed_;
-  double last_seconds_ = 0.;
+  double last_seconds_ = 0., prepared_seconds_ = 0.;
   bool fitted_ = false;
   std::string message_;
   bool message_is_error_ = false;

@@ -109,23 +109,37 @@ void StandWorker::work() {
   }
 }
 
+bool StandWorker::tell(double done) {
+  const std::lock_guard lock(mutex_);
+  done_ = done;
+  return !cancelled_;
+}
+
 void StandWorker::make(StandWish wish) {
   const auto start = Clock::now();
   const auto same = [](const GeometryEffort& a, const GeometryEffort& b) {
     return a.light_resolution == b.light_resolution && a.sample_directions == b.sample_directions &&
            a.sample_resolution == b.sample_resolution && a.cells == b.cells;
   };
-  if (!geometry_ || !same(effort_, wish.effort)) geometry_ = std::make_unique<StandGeometry>(wish.effort);
+  const bool from_nothing = !geometry_ || !same(effort_, wish.effort);
+  if (from_nothing) geometry_ = std::make_unique<StandGeometry>(wish.effort);
   effort_ = wish.effort;
-  geometry_->update(wish.scene, wish.needs, std::nullopt, [this](double done) {
-    const std::lock_guard lock(mutex_);
-    done_ = done;
-    return !cancelled_;
-  });
+  const auto progress = [this](double done) { return tell(done); };
+  geometry_->update(wish.scene, wish.needs, std::nullopt, progress);
+  const double seconds = secondsSince(start);
+  if (wish.exact) {
+    {
+      const std::lock_guard lock(mutex_);
+      what_ = "tables of the exact solution";
+      done_ = 0.;
+    }
+    tables_.make(wish.scene.kinds, progress);
+  }
   Result result{.made = std::move(wish),
                 .geometry = geometry_.get(),
                 .costs = geometry_->lastCosts(),
-                .seconds = secondsSince(start)};
+                .seconds = seconds,
+                .from_nothing = from_nothing};
   const std::lock_guard lock(mutex_);
   result_ = std::move(result);
 }

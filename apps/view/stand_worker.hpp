@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/view/document.hpp"
+#include "apps/view/exact_tables.hpp"
 
 namespace sunfleck::view {
 
@@ -19,6 +20,7 @@ struct StandWish {
   Scene scene;
   GeometryNeeds needs;
   GeometryEffort effort;
+  bool exact = false;          // with tables of the exact solution for its leaves
   std::uint64_t revision = 0;  // of the wisher's, given back with the result
 };
 
@@ -31,7 +33,8 @@ class StandWorker {
     StandWish made;
     const StandGeometry* geometry = nullptr;
     std::vector<ProductCost> costs;  // of this update alone
-    double seconds = 0.;             // wall time
+    double seconds = 0.;             // wall time of the geometry
+    bool from_nothing = false;       // it held nothing before
   };
 
   StandWorker();
@@ -58,6 +61,7 @@ class StandWorker {
     double seconds = 0.;  // since it began
   };
   State state() const;
+  ExactTables& tables() { return tables_; }
 
  private:
   struct Task {
@@ -67,6 +71,7 @@ class StandWorker {
 
   void work();
   void make(StandWish wish);
+  bool tell(double done);  // whether to go on
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
@@ -81,6 +86,7 @@ class StandWorker {
 
   std::unique_ptr<StandGeometry> geometry_;  // the thread's own, but while it is lent
   GeometryEffort effort_;
+  ExactTables tables_;
   std::thread thread_;
 };
 

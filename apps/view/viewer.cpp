@@ -10,8 +10,6 @@
 #include <thread>
 
 #include "core/require.hpp"
-#include "render/compare/exact_powers.hpp"
-#include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_writer.hpp"
 
@@ -39,7 +37,7 @@ Viewer::Viewer(const ViewerOptions& options)
       context_(contextFor(options)),
       gui_(window_->scale()),
       session_(options.name, options.read),
-      renderer_(*context_, exactPowerTable),
+      renderer_(*context_, [this](const LeafOptics& leaf) { return session_.exactTables().of(leaf); }),
       tracing_(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)) {
   session_.look = options.look;
   report_.renderer = context_->renderer();
@@ -56,9 +54,9 @@ bool Viewer::still() const {
   const bool b_is_drawn = session_.look.comparison == Comparison::off || !session_.look.other ||
                           (b_.done(session_.look.samples) && b_.key() == keyOf(*session_.look.other));
   if (stand_ == 0 || input_.size == glm::ivec2(0))  // nothing to be drawn
-    return session_.upToDate() && !session_.work().busy && synthetic_.empty();
-  return session_.upToDate() && !session_.work().busy && a_.done(session_.look.samples) &&
-         a_.key() == keyOf(session_.document().model) && b_is_drawn && synthetic_.empty();
+    return session_.upToDate() && !session_.work().busy && synthetic_.empty() && !hasTasks();
+  return session_.upToDate() && !session_.work().busy && a_.done(session_.look.samples) && a_.key() == keyOf(model_) &&
+         b_is_drawn && synthetic_.empty() && !hasTasks();
 }
 
 bool Viewer::settled() const {
@@ -80,12 +78,13 @@ bool Viewer::needsDrawing() const {
 
 bool Viewer::waitsForWork() const {
   if (!session_.loaded()) return true;
-  return !session_.upToDate() && session_.work().busy &&
-         (stand_ == 0 || (a_.done(session_.look.samples) && a_.key() == keyOf(session_.document().model)));
+  return ((!session_.upToDate() && session_.work().busy) || session_.hasTasks()) &&
+         (stand_ == 0 || (!exr_ && a_.done(session_.look.samples) && a_.key() == keyOf(model_)));
 }
 
 void Viewer::takeResult() {
   session_.advance();
+  if (exr_) return;  // all of it shows the same stand
   const auto result = session_.take();
   if (!result) return;
   const Elapsed sending;
@@ -111,6 +110,7 @@ bool Viewer::frame() {
   if (!needsDrawing()) return true;
   drawn_seconds_ = clock_.seconds();
   const Elapsed frame_time;
+  drawExr();
   if (input_.size != glm::ivec2(0)) {
     canvas_.resize(input_.size);
     const double now = clock_.seconds();
@@ -142,7 +142,9 @@ bool Viewer::frame() {
   if (session_.loaded()) ++frame_count_;
   if (frames_left_ > 0) --frames_left_;
   if (options_.frames && frame_count_ >= *options_.frames) return false;
-  return !(options_.ends && next_step_ == options_.script.size() && frames_left_ == 0 && synthetic_.empty());
+  const bool ended = options_.ends && next_step_ == options_.script.size() && frames_left_ == 0 && synthetic_.empty();
+  if (ended) requireNoFailure();
+  return !ended || hasTasks();
 }
 
 Input Viewer::nextInput() {
@@ -186,10 +188,12 @@ bool Viewer::drawPictures() {
   if (stand_ == 0) return false;
   const Look& look = session_.look;
   renderer_.timePasses(panels_.shown && panels_.right == Tab::times);  // it waits for each pass
-  bool drew = a_.draw(renderer_, keyOf(session_.document().model), look.samples);
-  const bool compares = look.comparison != Comparison::off || flipped_;
   endStaleReference();
-  if (compares && look.other) drew |= b_.draw(renderer_, keyOf(*look.other), look.samples);
+  if (session_.drawable(session_.document().model)) model_ = session_.document().model;
+  bool drew = a_.draw(renderer_, keyOf(model_), look.samples);
+  const bool compares = look.comparison != Comparison::off || flipped_;
+  const bool draws_b = compares && look.other && session_.drawable(*look.other);
+  if (draws_b) drew |= b_.draw(renderer_, keyOf(*look.other), look.samples);
   if (drew)
     report_.passes_ms = {{"what is seen", 1e3 * a_.cost().visible_seconds},
                          {"shading", 1e3 * a_.cost().shading_seconds}};
@@ -200,7 +204,7 @@ bool Viewer::drawPictures() {
                  .layer = look.layer};
   };
   std::optional<Shown> b;
-  if (compares && look.other) b = shown(b_);
+  if (draws_b) b = shown(b_);
   if (compares && !look.other) b = referenceShown();
   if (look.comparison != Comparison::off) compare();
   Look now = look;
@@ -211,41 +215,67 @@ bool Viewer::drawPictures() {
 
 void Viewer::serve(Requests& requests) {
   if (!session_.loaded()) return;
-  const auto write = [&](std::optional<std::filesystem::path>& file, auto&& save) {
-    if (!file) return;
-    session_.attempt([&] {
-      save(*file);
-      session_.say("wrote " + file->string());
-    });
+  const auto save = [&](std::optional<std::filesystem::path>& file, auto&& saves) {
+    if (file) session_.attempt([&] { saves(*file); });
     file.reset();
   };
-  write(requests.screenshot, [&](const auto& file) { saveScreenshot(file); });
-  write(requests.window_screenshot, [&](const auto& file) { saveWindow(file); });
-  write(requests.exr, [&](const auto& file) { saveExr(file); });
-  write(requests.scene, [&](const auto& file) { saveScene(file); });
+  save(requests.screenshot, [&](const auto& file) { savePng(file, picture_); });
+  save(requests.exr, [&](const auto& file) { beginExr(file); });
+  save(requests.scene, [&](const auto& file) { saveScene(file); });
+  if (std::exchange(requests.cancel, false)) {
+    session_.cancel();
+    exr_.reset();
+  }
 }
 
-void Viewer::saveScreenshot(const std::filesystem::path& file) const {
-  writePng(file, picture_.size().x, picture_.size().y, picture_.read());
+void Viewer::savePng(const std::filesystem::path& file, const Canvas& canvas) {
+  requirePictureName(file);
+  if (file.extension() != ".png") throw InvalidInput(file.string() + ": must end in .png");
+  session_.write(file,
+                 [file, size = canvas.size(), colours = canvas.read()] { writePng(file, size.x, size.y, colours); });
 }
 
-void Viewer::saveWindow(const std::filesystem::path& file) const {
-  writePng(file, canvas_.size().x, canvas_.size().y, canvas_.read());
-}
-
-void Viewer::saveExr(const std::filesystem::path& file) {
+void Viewer::beginExr(const std::filesystem::path& file) {
   if (file.extension() != ".exr") throw InvalidInput(file.string() + ": must end in .exr");
   requirePictureName(file);
-  gl::PictureEffort effort{
-      .model = session_.document().model, .samples = session_.look.samples, .layers = {}, .exact = exactPowerTable};
-  for (int layer = 1; layer < gl::kLayers; ++layer) effort.layers.push_back(static_cast<gl::Layer>(layer));
-  writeImage(file, gl::standPicture(*context_, renderer_, session_.camera, effort), 1.f);
+  if (exr_) throw InvalidInput(file.string() + ": must wait until " + exr_->file.string() + " is drawn");
+  if (stand_ == 0) throw InvalidInput(file.string() + ": must wait until there is a picture");
+  gl::PictureEffort effort{.model = model_, .samples = session_.look.samples, .layers = {}, .exact = {}};
+  effort.layers.assign(gl::kLayersBesideTotal.begin(), gl::kLayersBesideTotal.end());
+  exr_.emplace(Exr{file, gl::PictureByFrames(*context_, renderer_, session_.camera, effort)});
 }
 
-void Viewer::saveScene(const std::filesystem::path& file) const {
+// One frame in each of the window's.
+void Viewer::drawExr() {
+  report_.exr_done.reset();
+  if (!exr_) return;
+  if (!exr_->picture.complete()) exr_->picture.drawFrame();
+  report_.exr_done = exr_->picture.done();
+  if (!exr_->picture.complete()) return;
+  session_.write(exr_->file,
+                 [file = exr_->file, image = exr_->picture.take()] { writeImage(file, image, Display(1.f)); });
+  exr_.reset();
+}
+
+namespace {
+
+// Within what scene files hold, with the same proportions.
+Camera asScenesHold(Camera camera) {
+  constexpr int kLongest = 8192;
+  const int longest = std::max(camera.width, camera.height);
+  if (longest <= kLongest) return camera;
+  for (int* side : {&camera.width, &camera.height})
+    *side = std::max(1, static_cast<int>(std::int64_t{*side} * kLongest / longest));
+  return camera;
+}
+
+}  // namespace
+
+void Viewer::saveScene(const std::filesystem::path& file) {
   Scene scene = session_.document().scene;
-  scene.camera = session_.camera;
-  writeScene(file, scene);
+  scene.camera = asScenesHold(session_.camera);
+  for (SavedCamera& saved : scene.saved_cameras) saved.camera = asScenesHold(saved.camera);
+  session_.write(file, [file, scene] { writeScene(file, scene); });
 }
 
 }  // namespace sunfleck::view

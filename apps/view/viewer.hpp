@@ -17,6 +17,7 @@
 #include "core/elapsed.hpp"
 #include "render/compare/reference_picture.hpp"
 #include "render/gl/context.hpp"
+#include "render/gl/stand_picture.hpp"
 #include "render/gl/stand_renderer.hpp"
 
 namespace sunfleck::view {
@@ -46,6 +47,11 @@ class Viewer {
 
  private:
   enum class Drag { none, turn, shift, tree, sun, wipe, paint };
+  // A picture with layers that is drawn frame by frame for a file.
+  struct Exr {
+    std::filesystem::path file;
+    gl::PictureByFrames picture;
+  };
   // What Monte Carlo was begun for.
   struct ReferenceKey {
     Camera camera;
@@ -78,19 +84,21 @@ class Viewer {
   void overlay();
   void serve(Requests& requests);
   PictureKey keyOf(Model model) const;
+  void beginExr(const std::filesystem::path& file);
+  void drawExr();
   Probe probeAt(glm::vec2 place);
   bool still() const;  // what is drawn is up to date and smooth
   bool needsDrawing() const;
   bool waitsForWork() const;  // in the background, with nothing to draw until then
   void takeResult();
   bool settled() const;  // and the panels tell of it
-  void saveScreenshot(const std::filesystem::path& file) const;
-  void saveWindow(const std::filesystem::path& file) const;
-  void saveExr(const std::filesystem::path& file);
-  void saveScene(const std::filesystem::path& file) const;
+  void savePng(const std::filesystem::path& file, const Canvas& canvas);
+  void saveScene(const std::filesystem::path& file);
 
   // Does steps until one has to wait for frames.
   void advanceScript();
+  bool hasTasks() const;  // that a script waits for
+  void requireNoFailure() const;
   bool blocked(const ScriptStep& step);  // it waits
   void execute(const ScriptStep& step);
   void executeEdit(const ScriptStep& step);
@@ -113,12 +121,14 @@ class Viewer {
   std::optional<gl::FrameTarget> probe_target_;  // of one pixel
   std::uint64_t stand_ = 0;                      // which the renderer holds; 0: none
   std::size_t drawn_trees_ = 0;                  // of that stand
+  Model model_ = Model::sppg;                    // the document's, as soon as it can be drawn
+  std::optional<Exr> exr_;
   ReferencePicture tracing_;
   ImageTexture reference_texture_;
   ReferencePicture::Snapshot reference_;       // the last one seen
   std::optional<ReferenceKey> reference_key_;  // that it runs for
   Elapsed reference_clock_;
-  double looked_seconds_ = -1.;
+  double looked_seconds_ = -1., looking_seconds_ = 0.;
   std::optional<ComparedKey> compared_;
   float largest_difference_ = 0.f;  // but for outliers
   bool flipped_ = false;

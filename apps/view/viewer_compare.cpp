@@ -9,7 +9,8 @@
 namespace sunfleck::view {
 namespace {
 
-constexpr double kLookAgain = 0.25;      // at Monte Carlo [s]
+constexpr double kLookAgain = 0.25;      // at Monte Carlo [s], but no more than
+constexpr double kShareOfLooking = 0.1;  // of the time, as large pictures take long to compare
 constexpr double kShareInScale = 0.995;  // of the pixels whose difference the colours tell
 
 Image imageOf(const ProgressivePicture& picture) {
@@ -53,8 +54,10 @@ std::optional<Shown> Viewer::referenceShown() {
     report_.reference_runs = true;
   }
   const double now = reference_clock_.seconds();
-  if (report_.reference_runs && now - looked_seconds_ >= kLookAgain) {
+  if (report_.reference_runs && now - looked_seconds_ >= std::max(kLookAgain, looking_seconds_ / kShareOfLooking)) {
     looked_seconds_ = now;
+    looking_seconds_ = 0.;
+    const Elapsed looking;
     const ReferencePicture::Snapshot seen = tracing_.snapshot();
     report_.reference_runs = seen.running;
     report_.reference_seconds = now;
@@ -69,6 +72,7 @@ std::optional<Shown> Viewer::referenceShown() {
       reference_ = seen;
       compared_.reset();
     }
+    looking_seconds_ += looking.seconds();
   }
   return reference_texture_.shown();
 }
@@ -77,7 +81,7 @@ std::optional<Shown> Viewer::referenceShown() {
 void Viewer::compare() {
   const Look& look = session_.look;
   report_.difference_scale = look.difference_scale > 0.f ? look.difference_scale : std::max(largest_difference_, 1e-6f);
-  ComparedKey key{.a = keyOf(session_.document().model), .b = {}, .samples = look.samples};
+  ComparedKey key{.a = keyOf(model_), .b = {}, .samples = look.samples};
   if (look.other) key.b = keyOf(*look.other);
   if (compared_ == key) return;
   const bool there = key.b ? b_.done(look.samples) && b_.key() == *key.b : reference_texture_.shown().has_value();
@@ -85,6 +89,7 @@ void Viewer::compare() {
     report_.error.reset();
     return;
   }
+  const Elapsed looking;
   const Image of_a = imageOf(a_), of_b = look.other ? imageOf(b_) : reference_.radiance;
   report_.error = pictureError(of_a, of_b, look.other ? nullptr : &reference_.standard_error);
   std::vector<float> differences = differencePicture(of_a, of_b, Difference::absolute).values;
@@ -93,6 +98,7 @@ void Viewer::compare() {
   std::nth_element(differences.begin(), rank, differences.end());
   largest_difference_ = *rank;
   compared_ = key;
+  looking_seconds_ += looking.seconds();
 }
 
 Probe Viewer::probeAt(glm::vec2 place) {
@@ -105,8 +111,7 @@ Probe Viewer::probeAt(glm::vec2 place) {
   }
   // The middle of this pixel alone, as no other sample blurs it.
   if (!probe_target_) probe_target_.emplace(glm::ivec2(1), true);
-  const gl::View view{
-      .camera = camera, .model = session_.document().model, .low = {probe.pixel.x, camera.height - 1 - probe.pixel.y}};
+  const gl::View view{.camera = camera, .model = model_, .low = {probe.pixel.x, camera.height - 1 - probe.pixel.y}};
   renderer_.draw(view, *probe_target_);
   const auto read = [&](gl::Layer layer) {
     const std::vector<float> v = probe_target_->read(layer);

@@ -206,7 +206,7 @@ void Viewer::overlay() {
     const float x = std::round(session_.look.wipe * static_cast<float>(camera.width));
     list.AddLine(onScreen({x, 0.f}, corner_), onScreen({x, static_cast<float>(camera.height)}, corner_),
                  IM_COL32(255, 255, 255, 200), 2.f);
-    const std::string a = nameOf(session_.document().model);
+    const std::string a = nameOf(model_);
     const std::string b = session_.look.other ? nameOf(*session_.look.other) : "Monte Carlo";
     const float letter = ImGui::GetFontSize();
     list.AddText(onScreen({x - ImGui::CalcTextSize(a.c_str()).x - 0.6f * letter, 0.5f * letter}, corner_),

@@ -67,13 +67,13 @@ std::string bytesOf(const std::string& file) {
 
 void Viewer::advanceScript() {
   while (next_step_ < options_.script.size() && frames_left_ == 0 && synthetic_.empty()) {
-    if (!session_.loaded()) return;
+    requireNoFailure();
     const ScriptStep& step = options_.script[next_step_];
+    if (!session_.loaded() || (hasTasks() && step.verb != Verb::cancel)) return;
     const auto where = [&](const char* what) {
       return fmt::format("{}:{}: {}", options_.script_name, step.line, what);
     };
     try {
-      if (session_.messageIsError()) throw InvalidInput(session_.message());
       if (blocked(step)) return;
       execute(step);
       still_frames_ = 0;
@@ -86,12 +86,24 @@ void Viewer::advanceScript() {
   }
 }
 
+bool Viewer::hasTasks() const {
+  return exr_ || session_.hasTasks();
+}
+
+// What went wrong after a step was done, in the background or by the mouse, is that step's failure.
+void Viewer::requireNoFailure() const {
+  if (next_step_ > 0 && session_.messageIsError())
+    throw InvalidInput(
+        fmt::format("{}:{}: {}", options_.script_name, options_.script[next_step_ - 1].line, session_.message()));
+}
+
 bool Viewer::blocked(const ScriptStep& step) {
   switch (step.verb) {
     // What looks at the picture needs one of what the lines before made.
     case Verb::pick:
     case Verb::probe:
     case Verb::exr:
+    case Verb::cost:
     case Verb::wait_ready:
     case Verb::window_screenshot:
     case Verb::expect_recomputed:
@@ -154,9 +166,11 @@ void Viewer::executeEdit(const ScriptStep& step) {
           {"none", Kind::none}, {"uniform", Kind::uniform}, {"overcast", Kind::overcast}, {"preetham", Kind::preetham}};
       SceneSky sky{.kind = kKinds.at(step.texts[0])};
       if (!step.numbers.empty() || sky.kind == Kind::uniform || sky.kind == Kind::overcast)
-        sky.irradiance = glm::dvec3(step.numbers.empty() ? 0.2 : step.numbers[0]);
+        sky.irradiance = glm::dvec3(step.numbers.empty() ? kSkyIrradiance : step.numbers[0]);
       return session_.edit(SetSky{sky});
     }
+    case Verb::sky_image:
+      return session_.setSkyImage(step.texts[0], step.numbers.empty() ? 0.f : radians(step.numbers[0]));
     case Verb::ground:
       return session_.edit(SetGround{
           {number(step, 0), number(step, 1, number(step, 0)), number(step, 2, number(step, 1, number(step, 0)))}});
@@ -192,6 +206,8 @@ void Viewer::executeEdit(const ScriptStep& step) {
       return session_.select(probeAt({number(step, 0), number(step, 1)}).tree);
     case Verb::move:
       return session_.moveSelected({number(step, 0), number(step, 1)});
+    case Verb::turn:
+      return session_.turnSelected(radians(step.numbers[0]));
     case Verb::add: {
       std::uint32_t of = kind;
       if (!step.texts.empty()) {
@@ -301,6 +317,10 @@ void Viewer::executeLook(const ScriptStep& step) {
                   : "");
       break;
     }
+    case Verb::cost:
+      fmt::print("{}; to the graphics card {:.1f} ms, {:.2f} MB\n", session_.lastCostText(), report_.sent_ms,
+                 1e-6 * static_cast<double>(report_.sent_bytes));
+      break;
     case Verb::panels:
       panels_.shown = step.texts[0] == "on";
       break;
@@ -314,16 +334,17 @@ void Viewer::executeLook(const ScriptStep& step) {
     case Verb::wait_reference:
       break;
     case Verb::cancel:
-      session_.cancel();
+      requests_.cancel = true;
+      frames_left_ = 1;  // in which it is done
       break;
     case Verb::screenshot:
-      saveScreenshot(step.texts[0]);
+      savePng(step.texts[0], picture_);
       break;
     case Verb::window_screenshot:
-      saveWindow(step.texts[0]);
+      savePng(step.texts[0], canvas_);
       break;
     case Verb::exr:
-      saveExr(step.texts[0]);
+      beginExr(step.texts[0]);
       break;
     case Verb::save:
       saveScene(step.texts[0]);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/require.hpp"
 #include "render/gl/detail/frame_data.hpp"
@@ -73,55 +74,60 @@ std::string nameOf(Layer layer) {
   return namesOf(layer).name;
 }
 
+PictureByFrames::PictureByFrames(const Context& context, StandRenderer& renderer, const Camera& camera,
+                                 PictureEffort effort)
+    : context_(&context),
+      renderer_(&renderer),
+      effort_(std::move(effort)),
+      view_{.camera = camera, .model = effort_.model, .piece_pixels = effort_.piece_pixels},
+      image_{.width = camera.width, .height = camera.height, .channels = {}, .values = {}},
+      layers_{Layer::total} {
+  requireDrawable(camera);
+  layers_.insert(layers_.end(), effort_.layers.begin(), effort_.layers.end());
+  for (const Layer layer : layers_) {
+    first_channel_.push_back(image_.channels.size());
+    const auto& names = namesOf(layer).channels;
+    image_.channels.insert(image_.channels.end(), names.begin(), names.end());
+  }
+  image_.values.resize(image_.at(0, camera.height, 0));
+  const glm::ivec2 picture(camera.width, camera.height);
+  tile_ = glm::min(glm::ivec2(kTile), picture);
+  tiles_ = (picture + tile_ - 1) / tile_;
+  frames_of_tile_ = effort_.samples + (layers_.size() > 1 ? 1 : 0);
+  target_.emplace(tile_, layers_.size() > 1);
+}
+
+void PictureByFrames::copyLayers(bool sums) {
+  for (std::size_t i = 0; i < layers_.size(); ++i)
+    if (isSum(layers_[i]) == sums) copyTile(*target_, layers_[i], view_.low, first_channel_[i], image_);
+}
+
+void PictureByFrames::drawFrame() {
+  if (complete()) return;
+  const int tile = frame_ / frames_of_tile_, of_middle = layers_.size() > 1 ? 1 : 0;
+  const int sample = frame_ % frames_of_tile_ - of_middle;
+  view_.low = tile_ * glm::ivec2(tile % tiles_.x, tile / tiles_.x);
+  const int first = effort_.samples % 2 == 0 ? 1 : 0;  // in pairs about the middle
+  view_.offset = sampleOffset(sample < 0 ? 0 : first + sample);
+  view_.accumulate = sample > 0;
+  if (effort_.visible)
+    renderer_->draw(view_, *target_, effort_.visible(view_, target_->size()));
+  else
+    renderer_->draw(view_, *target_);
+  context_->requireNoError("drawing the picture");
+  if (sample < 0) copyLayers(false);
+  if (sample == effort_.samples - 1) copyLayers(true);
+  ++frame_;
+}
+
 Image standPicture(const Context& context, StandRenderer& renderer, const Camera& camera, const PictureEffort& effort,
                    const Progress& progress) {
-  requireDrawable(camera);
-  Image image{.width = camera.width, .height = camera.height, .channels = {}, .values = {}};
-  std::vector<Layer> layers{Layer::total};
-  layers.insert(layers.end(), effort.layers.begin(), effort.layers.end());
-  std::vector<std::size_t> first_channel;
-  for (const Layer layer : layers) {
-    first_channel.push_back(image.channels.size());
-    const auto& names = namesOf(layer).channels;
-    image.channels.insert(image.channels.end(), names.begin(), names.end());
+  PictureByFrames picture(context, renderer, camera, effort);
+  while (!picture.complete()) {
+    if (!goOn(progress, picture.done())) throw std::runtime_error("interrupted");
+    picture.drawFrame();
   }
-  image.values.resize(image.at(0, camera.height, 0));
-
-  const glm::ivec2 picture(camera.width, camera.height);
-  const glm::ivec2 tile = glm::min(glm::ivec2(kTile), picture);
-  const glm::ivec2 tiles = (picture + tile - 1) / tile;
-  FrameTarget target(tile, layers.size() > 1);
-  View view{.camera = camera, .model = effort.model, .piece_pixels = effort.piece_pixels};
-  const double frames = static_cast<double>(tiles.x * tiles.y) * effort.samples;
-  int frame = 0;
-  for (int y = 0; y < tiles.y; ++y)
-    for (int x = 0; x < tiles.x; ++x) {
-      view.low = tile * glm::ivec2(x, y);
-      const auto draw = [&](int number, bool accumulate) {
-        view.offset = sampleOffset(number);
-        view.accumulate = accumulate;
-        if (effort.visible)
-          renderer.draw(view, target, effort.visible(view, target.size()));
-        else
-          renderer.draw(view, target);
-      };
-      const auto copy = [&](bool sums) {
-        for (std::size_t i = 0; i < layers.size(); ++i)
-          if (isSum(layers[i]) == sums) copyTile(target, layers[i], view.low, first_channel[i], image);
-      };
-      if (layers.size() > 1) {
-        draw(0, false);
-        copy(false);
-      }
-      const int first = effort.samples % 2 == 0 ? 1 : 0;  // in pairs about the middle
-      for (int sample = 0; sample < effort.samples; ++sample) {
-        if (!goOn(progress, frame++ / frames)) throw std::runtime_error("interrupted");
-        draw(first + sample, sample > 0);
-        context.requireNoError("drawing the picture");
-      }
-      copy(true);
-    }
-  return image;
+  return picture.take();
 }
 
 Image scenePicture(const Scene& scene, const StandGeometry& geometry, const PictureEffort& effort,

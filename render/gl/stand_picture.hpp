@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/image.hpp"
 #include "core/progress.hpp"
 #include "render/gl/drawn_stand.hpp"
+#include "render/gl/frame_target.hpp"
 #include "render/gl/stand_renderer.hpp"
 #include "render/model.hpp"
 
@@ -30,6 +32,33 @@ struct PictureEffort {
 // and std::runtime_error("interrupted") when `progress` ends it.
 Image standPicture(const Context& context, StandRenderer& renderer, const Camera& camera, const PictureEffort& effort,
                    const Progress& progress = {});
+
+// The same picture by one frame at a time, for a thread that has other things to draw, too: the renderer may draw other
+// views between them, but of the same stand. Throws as standPicture() does.
+class PictureByFrames {
+ public:
+  PictureByFrames(const Context& context, StandRenderer& renderer, const Camera& camera, PictureEffort effort);
+  bool complete() const { return frame_ == frames(); }
+  double done() const { return static_cast<double>(frame_) / frames(); }  // share of the frames
+  void drawFrame();                                                       // unless it is complete
+  Image take() { return std::move(image_); }                              // once, when it is complete
+
+ private:
+  int frames() const { return tiles_.x * tiles_.y * frames_of_tile_; }
+  void copyLayers(bool sums);
+
+  const Context* context_;
+  StandRenderer* renderer_;
+  PictureEffort effort_;
+  View view_;
+  Image image_;
+  std::vector<Layer> layers_;
+  std::vector<std::size_t> first_channel_;  // of each layer
+  glm::ivec2 tile_, tiles_;
+  int frames_of_tile_;  // one in the middle of the pixels first, where there are layers
+  std::optional<FrameTarget> target_;
+  int frame_ = 0;  // that comes next
+};
 
 // The same of a scene, with a context of its own; `geometry` is up to date for it. Needs no display. Throws TooLarge
 // too, and std::runtime_error when there is no OpenGL 4.5.

@@ -1,9 +1,12 @@
 // GLFW and the libraries of windows that it brings, in a library of its own, loaded when a window is opened.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <dlfcn.h>
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -16,6 +19,20 @@ namespace {
 std::string lastError() {
   const char* text = nullptr;
   return glfwGetError(&text) != GLFW_NO_ERROR && text ? text : "no reason is told";
+}
+
+// What Xlib calls when the connection to the display breaks, on any thread: it must not return.
+int displayIsLost(void*) {
+  std::fputs("sunfleck: failed: the display is lost: its server has ended or has closed the connection\n", stderr);
+  std::_Exit(1);
+}
+
+// GLFW may not use Xlib at all: then it is not loaded.
+void endInOneLineWithoutDisplay() {
+  void* const xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  void* const set = xlib ? dlsym(xlib, "XSetIOErrorHandler") : nullptr;
+  using Handler = int (*)(void* display);
+  if (set) reinterpret_cast<Handler (*)(Handler)>(set)(displayIsLost);
 }
 
 int keyOf(int glfw) {
@@ -46,6 +63,7 @@ class GlfwWindow final : public Window {
  public:
   GlfwWindow(const std::string& title, glm::ivec2 size) {
     if (!glfwInit()) throw std::runtime_error("a window needs a display (DISPLAY or WAYLAND_DISPLAY): " + lastError());
+    endInOneLineWithoutDisplay();
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -54,7 +72,6 @@ class GlfwWindow final : public Window {
     window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
     if (!window_) {
       const std::string reason = lastError();
-      glfwTerminate();
       throw std::runtime_error(
           "a window needs OpenGL 4.5 (core profile), which this display's driver does not offer: " + reason);
     }
@@ -73,10 +90,9 @@ class GlfwWindow final : public Window {
       if (action != GLFW_RELEASE) of(w).input_.pressed.push_back(key);
     });
   }
-  ~GlfwWindow() override {
-    glfwDestroyWindow(window_);
-    glfwTerminate();
-  }
+  // The display stays open until the program ends, as closing it takes the driver's library away: what that keeps could
+  // not be told from leaks.
+  ~GlfwWindow() override { glfwDestroyWindow(window_); }
 
   Input poll(double wait) override {
     if (wait > 0.)
