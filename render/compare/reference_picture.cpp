@@ -51,6 +51,23 @@ void addPart(ReferencePicture::Snapshot& shot, const std::vector<int>& bands,
   }
 }
 
+// Rays are traced through trees that stand.
+Scene withoutKindsThatStandNowhere(Scene scene) {
+  constexpr std::uint32_t kNowhere = ~0u;
+  std::vector<std::uint32_t> number(scene.kinds.size(), kNowhere);
+  std::vector<TreeKind> standing;
+  for (Placement& tree : scene.stand.trees) {
+    std::uint32_t& of = number[tree.kind];
+    if (of == kNowhere) {
+      of = static_cast<std::uint32_t>(standing.size());
+      standing.push_back(scene.kinds[tree.kind]);
+    }
+    tree.kind = of;
+  }
+  if (!standing.empty()) scene.kinds = std::move(standing);
+  return scene;
+}
+
 }  // namespace
 
 // What rays are traced through, kept for the next run where only camera, light or optics change.
@@ -142,7 +159,7 @@ ReferencePicture::~ReferencePicture() {
 void ReferencePicture::start(const Scene& scene, double target) {
   require(target > 0., "target", target, "above 0");
   cancel();
-  run_ = std::make_shared<Run>(scene, target);
+  run_ = std::make_shared<Run>(withoutKindsThatStandNowhere(scene), target);
   // The next waits for the last, so that none of this waits.
   thread_->thread = std::thread([this, run = run_, last = std::move(thread_->thread)]() mutable {
     if (last.joinable()) last.join();
@@ -168,6 +185,7 @@ void ReferencePicture::work(Run& run) {
 
 void ReferencePicture::trace(Run& run) {
   if (run.stopped) return;
+  if (run.scene.stand.trees.empty()) throw InvalidInput("Monte Carlo needs a tree: none stands");
   if (!traced_ || !traced_->fits(run.scene)) {
     traced_.reset();
     traced_ = std::make_shared<const Traced>(run.scene);

@@ -82,7 +82,7 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
     sent +=
         kinds_[i].levels.vertices.size() * sizeof(glm::vec3) + kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
   }
-  if (sent > 0) {
+  if (sent > 0 || first_triangle_.size() != kinds_.size()) {
     first_triangle_.clear();
     std::size_t count = 0;
     for (const Kind& kind : kinds_) {
