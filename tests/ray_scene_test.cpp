@@ -8,9 +8,11 @@
 #include <limits>
 
 #include "core/require.hpp"
+#include "render/reference/detail/scene_geometry.hpp"
 #include "tests/leaf_shapes.hpp"
 
 using namespace sunfleck;
+using namespace sunfleck::detail;
 using namespace sunfleck::shapes;
 
 namespace {
@@ -108,4 +110,42 @@ TEST(RayScene, RefusesInvalidStands) {
   EXPECT_THROW(make({.period = glm::vec2(1, -1)}), InvalidInput);
   EXPECT_THROW(make({.period = glm::vec2(1e-6f)}), InvalidInput);
   EXPECT_THROW(RayScene(mesh, {.period = glm::vec2(1)}, true).crossings({0, 0, 9}, {0, 0, -1}), InvalidInput);
+}
+
+// Check that packets that are full, partly filled and empty come back, each with what its rays meet alone, whatever lay
+// in memory where the packet is made.
+TEST(RayScene, PacketsOfAnyNumberMeetWhatRaysMeetAlone) {
+  using Geometry = RayScene::Geometry;
+  const TreeMesh tree = leafBox(300, 8);
+  const Stand stand{.trees = {{.position = {0.5f, 0.f, 0.25f}}, {.position = {0.f, 0.5f, 0.f}, .rotation = 2.1f}}};
+  const RayScene made(tree, stand, true);
+  const Geometry& scene = made.geometry();
+  const Direction along = glm::normalize(glm::vec3(0.2f, 0.1f, -1.f));
+  const float reach = std::numeric_limits<float>::infinity();
+  Random random(11, 0);
+  int met = 0;
+  for (int round = 0; round < 50; ++round)
+    for (std::size_t count = 0; count <= Geometry::kPacket; ++count) {
+      std::vector<glm::vec3> from;
+      for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec3 at(random.uniform(), random.uniform(), 1.f);
+        from.push_back(scene.box.low + at * scene.box.size());
+      }
+      const std::vector<Direction> directions(count, along);
+      const std::vector<float> reaches(count, reach);
+      std::vector<Hit> hits(count);
+      scene.closest(from, directions, reaches, hits);
+      std::array<bool, Geometry::kPacket> blocked{};
+      for (std::size_t i = 0; i < count; ++i) blocked[i] = random.uniform() < 0.5f;
+      const std::array<bool, Geometry::kPacket> before = blocked;
+      scene.blocked(from, along, std::span(blocked).first(count));
+      for (std::size_t i = 0; i < count; ++i) {
+        const Hit alone = scene.closest(from[i], along, Coherence::incoherent, reach);
+        EXPECT_EQ(hits[i].surface, alone.surface);
+        EXPECT_EQ(hits[i].leaf, alone.leaf);
+        EXPECT_EQ(blocked[i], before[i] || alone.surface != Surface::none);
+        met += alone.surface != Surface::none;
+      }
+    }
+  EXPECT_GT(met, 50);
 }

@@ -217,7 +217,7 @@ void CameraJob::trace(std::uint64_t seed, std::uint64_t unit, UnitTally& tally, 
           if (packet.full()) finish();
         }
       }
-    finish();
+    if (!packet.from.empty()) finish();
   });
 }
 

@@ -258,13 +258,14 @@ bool RayScene::Geometry::blocked(const glm::vec3& from, const glm::vec3& directi
 
 void RayScene::Geometry::closest(std::span<const glm::vec3> from, std::span<const Direction> directions,
                                  std::span<const float> reach, std::span<Hit> hits) const {
+  if (from.empty()) return;  // see blocked
   if (period) {
     for (std::size_t i = 0; i < from.size(); ++i)
       hits[i] = closest(from[i], directions[i], Coherence::coherent, reach[i]);
     return;
   }
   alignas(64) std::array<int, kPacket> valid{};
-  RTCRayHit16 rays;
+  RTCRayHit16 rays{};
   for (std::size_t i = 0; i < from.size(); ++i) {
     valid[i] = -1;
     set(rays.ray, i, from[i], directions[i], reach[i]);
@@ -293,7 +294,7 @@ void RayScene::Geometry::blocked(std::span<const glm::vec3> from, const glm::vec
     return;
   }
   alignas(64) std::array<int, kPacket> valid{};
-  RTCRay16 rays;
+  RTCRay16 rays{};
   bool asked = false;
   for (std::size_t i = 0; i < from.size(); ++i) {
     valid[i] = is_blocked[i] ? 0 : -1;

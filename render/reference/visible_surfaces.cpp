@@ -32,7 +32,7 @@ class Looking {
   // At the pixels from (left, top) on that are left of `right` and above `bottom`, at most kSide each way.
   void look(int left, int top, int right, int bottom, std::vector<glm::uvec2>& seen) const {
     alignas(64) std::array<int, kPacket> valid{};
-    RTCRayHit16 packet;
+    RTCRayHit16 packet{};
     for (int i = 0; i < kPacket; ++i) {
       const int x = left + i % kSide, y = top + i / kSide;
       const auto ray = static_cast<std::size_t>(i);
