@@ -232,6 +232,37 @@ TEST(R24_StandRenderer, LeavesOutWhatIsNotSeen) {
   }
 }
 
+// (R3) Check that light on the ground does not depend on what else a picture holds: beneath a tree that stands beside
+// the picture it is the same with the trees that the picture needs as with all.
+TEST(R3_StandRenderer, LightsTheGroundByTreesBesideThePicture) {
+  Woods woods;
+  woods.scene.suns.resize(1);
+  woods.scene.suns[0].zenith = 1.f;
+  const glm::vec3 light = woods.scene.sun().light(),
+                  middle = bounds(*woods.scene.kinds[0].mesh).centre() + woods.scene.stand.trees[4].position;
+  const float ground = bounds(woods.scene).low.z;
+  const Camera camera{.target = middle + (middle.z - ground) / -light.z * light,
+                      .elevation = 0.5f * kPi,
+                      .half_width = 0.4f,
+                      .width = 24,
+                      .height = 24};
+  const std::vector<std::size_t> trees = treesInPicture(woods.scene, camera);
+  EXPECT_LT(trees.size(), woods.scene.stand.trees.size());
+  woods.geometry.update(woods.scene, {}, trees);
+  const gl::PictureEffort effort{.samples = 1, .layers = {gl::Layer::multiple, gl::Layer::foliage}};
+  Drawing drawing(gl::drawnStand(woods.scene, woods.geometry));
+  const Image few = drawing.picture(camera, effort);
+  drawing.renderer.update(woods.stand());
+  const Image all = drawing.picture(camera, effort);
+  float least = 1.f;
+  for (int y = 0; y < all.height; ++y)
+    for (int x = 0; x < all.width; ++x) {
+      ASSERT_NEAR(value(few, x, y, "multiple.G"), value(all, x, y, "multiple.G"), kShading);
+      least = std::min(least, value(all, x, y, "foliage.G"));
+    }
+  EXPECT_LT(least, 0.95f);
+}
+
 // (R25) Check that with fewer and larger leaves the mean radiance and coverage stay within a few parts in a hundred,
 // which is what a random part of some hundred leaves spreads, that the leaves shown are the tree's, and the work is
 // less.
