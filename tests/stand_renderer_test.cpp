@@ -335,6 +335,23 @@ TEST(R24_StandRenderer, SendsWhatHasChanged) {
   EXPECT_GT(sent.maps, 0u);
 }
 
+// (R24) Check that a renderer tells products of one StandGeometry from those of another that has done the same work, by
+// day and by night: what it draws is what a new one draws, to the bit.
+TEST(R24_StandRenderer, TellsOneGeometryFromAnother) {
+  Woods woods;
+  for (const float zenith : {0.5f, 2.f}) {
+    for (Sun& sun : woods.scene.suns) sun.zenith = zenith;
+    woods.geometry = StandGeometry({.light_resolution = 64, .sample_resolution = 64, .cells = 8});
+    Drawing drawing(woods.stand());
+    const Image before = drawing.picture(woods.camera(48), {.samples = 1});
+    woods.geometry = StandGeometry({.light_resolution = 64, .sample_resolution = 8, .cells = 8});
+    drawing.renderer.update(woods.stand());
+    const Image after = drawing.picture(woods.camera(48), {.samples = 1});
+    EXPECT_TRUE(after.values != before.values);
+    EXPECT_TRUE(after.values == Drawing(woods.stand()).picture(woods.camera(48), {.samples = 1}).values);
+  }
+}
+
 // (R24) Check what is seen by no light at all, without trees, and of a single pixel: black leaves, the bare sky, ground
 // in full light.
 TEST(R24_StandRenderer, DrawsWhatIsHardlyThere) {

@@ -47,7 +47,6 @@ std::size_t CellAtlas::update(const DrawnStand& stand) {
     for (std::size_t light = 0; light < kMostLights; ++light)
       now[tree].compensation[light] = drawn.compensation[light].values.empty() ? 0 : drawn.compensation[light].revision;
     now[tree].sky_light = drawn.sky_light.values.empty() ? 0 : drawn.sky_light.revision;
-    now[tree].source = drawn.compensation[0].values.data();
   }
   glm::ivec3 block_size(1);
   for (const DrawnKind& kind : stand.kinds) block_size = glm::max(block_size, kind.cells.size);

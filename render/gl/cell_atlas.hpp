@@ -29,7 +29,6 @@ class CellAtlas {
     std::uint32_t block = ~0u;
     std::array<std::uint64_t, kMostLights> compensation{};  // revisions; 0: not told
     std::uint64_t sky_light = 0;
-    const void* source = nullptr;  // where they came from
     bool operator==(const Held&) const = default;
   };
   std::size_t send(const DrawnStand& stand, std::size_t tree, const Held& now);

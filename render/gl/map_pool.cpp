@@ -58,7 +58,6 @@ std::size_t MapPool::send(const LightMap& map, Held& held) {
     lines.push_back({.first = map.first[i], .end = map.first[i + 1], .wood_depth = map.wood_depth[i]});
   lines_.write(held.first_line, std::span<const detail::MapLine>(lines));
   crossings_.write(held.first_crossing, map.crossings);
-  held.source = map.crossings.data();
   return lines.size() * sizeof lines[0] + map.crossings.size_bytes();
 }
 
@@ -70,7 +69,7 @@ std::size_t MapPool::update(const DrawnStand& stand) {
     for (std::size_t light = 0; light < stand.kinds[kind].maps.size(); ++light) {
       const LightMap& map = stand.kinds[kind].maps[light];
       Held& held = held_[kMostLights * kind + light];
-      if (map.revision != held.revision || map.crossings.data() != held.source) sent += send(map, held);
+      if (map.revision != held.revision) sent += send(map, held);
       frames[kMostLights * kind + light] = {
           .origin = glm::vec4(map.origin, map.pixel_size),
           .corner = glm::vec4(map.corner, 0.f, 0.f),

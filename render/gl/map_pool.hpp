@@ -23,7 +23,6 @@ class MapPool {
  private:
   struct Held {
     std::uint64_t revision = 0;
-    const Crossing* source = nullptr;               // where it came from
     std::size_t first_line = 0, lines = 0;          // room
     std::size_t first_crossing = 0, crossings = 0;  // room
   };
