@@ -22,6 +22,8 @@ Format formatOf(BufferTexture::Texel texel) {
       return {GL_RGB32UI, 12};
     case BufferTexture::Texel::rgba32ui:
       return {GL_RGBA32UI, 16};
+    case BufferTexture::Texel::r32f:
+      return {GL_R32F, 4};
     case BufferTexture::Texel::rgba32f:
       break;
   }

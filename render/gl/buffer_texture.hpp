@@ -20,7 +20,7 @@ struct TooLarge : std::runtime_error {
 // renderers read it faster.
 class BufferTexture {
  public:
-  enum class Texel { r32ui, rg32ui, rgb32ui, rgba32ui, rgba32f };
+  enum class Texel { r32ui, rg32ui, rgb32ui, rgba32ui, r32f, rgba32f };
   //   what  it holds, for messages: "the light's opacity map takes"
   BufferTexture(Texel texel, std::string what);
 

@@ -64,17 +64,20 @@ std::size_t CellAtlas::update(const DrawnStand& stand) {
   trees_.resize(now.size());
   std::size_t sent = 0;
   for (std::size_t tree = 0; tree < now.size(); ++tree)
-    if (now[tree].block != ~0u && now[tree] != trees_[tree]) sent += send(stand, tree, now[tree]);
+    if (now[tree].block != kNoBlock && now[tree] != trees_[tree]) sent += send(stand, tree, now[tree]);
   trees_ = std::move(now);
   return sent;
+}
+
+glm::ivec3 CellAtlas::cornerOf(std::uint32_t block) const {
+  const int number = static_cast<int>(block);
+  return block_size_ * glm::ivec3(number % blocks_.x, number / blocks_.x % blocks_.y, number / (blocks_.x * blocks_.y));
 }
 
 std::size_t CellAtlas::send(const DrawnStand& stand, std::size_t tree, const Held& now) {
   const DrawnTree& drawn = stand.trees[tree];
   const glm::ivec3 size = glm::max(stand.kinds[drawn.kind].cells.size, glm::ivec3(1));
-  const int block = static_cast<int>(now.block);
-  const glm::ivec3 corner =
-      block_size_ * glm::ivec3(block % blocks_.x, block / blocks_.x % blocks_.y, block / (blocks_.x * blocks_.y));
+  const glm::ivec3 corner = cornerOf(now.block);
   const auto cells = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y * size.z);
   const auto channels = static_cast<std::size_t>(compensation_->channels());
   std::vector<float> values(channels * cells, 1.f);

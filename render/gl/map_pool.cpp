@@ -14,7 +14,8 @@ std::size_t withRoom(std::size_t crossings) {
 
 MapPool::MapPool()
     : lines_(BufferTexture::Texel::rgb32ui, "the light's opacity map takes"),
-      crossings_(BufferTexture::Texel::rg32ui, "the light's opacity map takes") {}
+      crossings_(BufferTexture::Texel::rg32ui, "the light's opacity map takes"),
+      frames_(Buffer::writable(kMostLights * kMostKinds * sizeof(detail::MapFrame))) {}
 
 bool MapPool::fits(const DrawnStand& stand) const {
   if (held_.size() != kMostLights * stand.kinds.size()) return false;
@@ -76,14 +77,14 @@ std::size_t MapPool::update(const DrawnStand& stand) {
           .size = {static_cast<std::uint32_t>(map.size.x), static_cast<std::uint32_t>(map.size.y),
                    static_cast<std::uint32_t>(held.first_line), static_cast<std::uint32_t>(held.first_crossing)}};
     }
-  frames_.emplace(frames);
+  frames_.write(0, std::as_bytes(std::span(frames)));
   return sent;
 }
 
 void MapPool::bind(unsigned lines, unsigned crossings, unsigned frames) const {
   lines_.bind(lines);
   crossings_.bind(crossings);
-  frames_->bindStorage(frames);
+  frames_.bindUniform(frames);
 }
 
 }  // namespace sunfleck::gl
