@@ -15,6 +15,8 @@
 #include "plants/random_leaves.hpp"
 #include "render/compare/exact_powers.hpp"
 #include "render/gl/stand_picture.hpp"
+#include "render/gl/too_large.hpp"
+#include "render/gl/volume_texture.hpp"
 #include "render/shading/fragment_shading.hpp"
 #include "sky/sky_models.hpp"
 
@@ -349,6 +351,24 @@ TEST(R24_StandRenderer, TellsOneGeometryFromAnother) {
     const Image after = drawing.picture(woods.camera(48), {.samples = 1});
     EXPECT_TRUE(after.values != before.values);
     EXPECT_TRUE(after.values == Drawing(woods.stand()).picture(woods.camera(48), {.samples = 1}).values);
+  }
+}
+
+// (R24) Check that a stand that is too large is refused as often as it is sent, and that nothing of it stays: maps of
+// more crossings than any memory holds, which are not there to be read, and cells wider than half of a texture.
+TEST(R24_StandRenderer, RefusesWhatIsTooLargeEachTime) {
+  Woods woods;
+  const gl::DrawnStand fits = woods.stand();
+  Drawing drawing(fits);
+  const Image before = drawing.picture(woods.camera(48), {.samples = 1});
+  gl::DrawnStand large_map = fits, large_cells = fits;
+  gl::LightMap& map = large_map.kinds[1].maps[0];
+  map.crossings = std::span(map.crossings.data(), std::size_t{1} << 40);
+  for (gl::DrawnKind& kind : large_cells.kinds) kind.cells.size = glm::ivec3(gl::VolumeTexture::longestSide() / 2 + 1);
+  for (const gl::DrawnStand* large : {&large_map, &large_cells}) {
+    for (int time = 0; time < 2; ++time) EXPECT_THROW(drawing.renderer.update(*large), gl::TooLarge);
+    drawing.renderer.update(fits);
+    EXPECT_TRUE(drawing.picture(woods.camera(48), {.samples = 1}).values == before.values);
   }
 }
 

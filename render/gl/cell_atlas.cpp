@@ -4,7 +4,7 @@
 #include <glm/common.hpp>
 #include <string>
 
-#include "render/gl/buffer_texture.hpp"
+#include "render/gl/too_large.hpp"
 
 namespace sunfleck::gl {
 namespace {
@@ -55,10 +55,12 @@ std::size_t CellAtlas::update(const DrawnStand& stand) {
   const auto room = static_cast<std::uint32_t>(blocks_.x * blocks_.y * blocks_.z);
   if (!compensation_ || channels != compensation_->channels() || block_size != block_size_ || count > room ||
       (with_sky && sky_->size() == glm::ivec3(1))) {
+    const glm::ivec3 blocks = blocksFor(std::max<std::size_t>(count, 1), block_size);
+    compensation_.reset();  // until all is there
+    sky_.emplace(with_sky ? block_size * blocks : glm::ivec3(1), 4);
+    compensation_.emplace(block_size * blocks, channels);
     block_size_ = block_size;
-    blocks_ = blocksFor(std::max<std::size_t>(count, 1), block_size);
-    compensation_.emplace(block_size_ * blocks_, channels);
-    sky_.emplace(with_sky ? block_size_ * blocks_ : glm::ivec3(1), 4);
+    blocks_ = blocks;
     trees_.clear();
   }
   trees_.resize(now.size());

@@ -1,5 +1,7 @@
 #include "render/gl/map_pool.hpp"
 
+#include <utility>
+
 #include "render/gl/detail/frame_data.hpp"
 
 namespace sunfleck::gl {
@@ -13,8 +15,8 @@ std::size_t withRoom(std::size_t crossings) {
 }  // namespace
 
 MapPool::MapPool()
-    : lines_(BufferTexture::Texel::rgb32ui, "the light's opacity map takes"),
-      crossings_(BufferTexture::Texel::rg32ui, "the light's opacity map takes"),
+    : lines_(BufferTexture::Texel::rgb32ui, "the light's opacity map takes", TooLarge::What::light_map),
+      crossings_(BufferTexture::Texel::rg32ui, "the light's opacity map takes", TooLarge::What::light_map),
       frames_(Buffer::writable(kMostLights * kMostKinds * sizeof(detail::MapFrame))) {}
 
 bool MapPool::fits(const DrawnStand& stand) const {
@@ -29,21 +31,23 @@ bool MapPool::fits(const DrawnStand& stand) const {
 }
 
 void MapPool::makeRoom(const DrawnStand& stand) {
-  held_.assign(kMostLights * stand.kinds.size(), {});
+  held_.clear();  // until there is room
+  std::vector<Held> held(kMostLights * stand.kinds.size());
   std::size_t lines = 0, crossings = 0;
   for (std::size_t kind = 0; kind < stand.kinds.size(); ++kind)
     for (std::size_t light = 0; light < stand.kinds[kind].maps.size(); ++light) {
       const LightMap& map = stand.kinds[kind].maps[light];
-      Held& held = held_[kMostLights * kind + light];
-      held = {.first_line = lines,
+      Held& room = held[kMostLights * kind + light];
+      room = {.first_line = lines,
               .lines = withRoom(map.wood_depth.size()),
               .first_crossing = crossings,
               .crossings = withRoom(map.crossings.size())};
-      lines += held.lines;
-      crossings += held.crossings;
+      lines += room.lines;
+      crossings += room.crossings;
     }
   lines_.resize(lines);
   crossings_.resize(crossings);
+  held_ = std::move(held);
 }
 
 std::size_t MapPool::send(const LightMap& map, Held& held) {

@@ -72,17 +72,19 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
   std::size_t sent = 0;
   tree_kinds_.clear();
   for (const DrawnKind& kind : stand.kinds) tree_kinds_.push_back(kind.tree);
-  if (kinds_.size() != stand.kinds.size()) kinds_.resize(stand.kinds.size());
+  bool changed = kinds_.size() != stand.kinds.size();
+  kinds_.resize(stand.kinds.size());
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const std::shared_ptr<const TreeMesh>& mesh = stand.kinds[i].tree.mesh;
     if (kinds_[i].mesh == mesh) continue;
-    kinds_[i].mesh = mesh;
+    changed = true;
+    kinds_[i].mesh = nullptr;  // until its triangles are sent
     kinds_[i].levels = mesh ? treeLevels(*mesh) : TreeLevels{};
     kinds_[i].buffers.emplace(kinds_[i].levels);
     sent +=
         kinds_[i].levels.vertices.size() * sizeof(glm::vec3) + kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
   }
-  if (sent > 0) {
+  if (changed) {
     first_triangle_.clear();
     std::size_t count = 0;
     for (const Kind& kind : kinds_) {
@@ -93,6 +95,7 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
     triangles_.resize(2 * count);
     for (std::size_t i = 0; i < kinds_.size(); ++i)
       triangles_.write(2 * first_triangle_[i], std::span<const TriangleData>(kinds_[i].levels.triangles));
+    for (std::size_t i = 0; i < kinds_.size(); ++i) kinds_[i].mesh = stand.kinds[i].tree.mesh;
     sent += count * sizeof(TriangleData);
   }
   std::vector<KindFrame> frames(std::max<std::size_t>(kinds_.size(), 1));
