@@ -138,9 +138,9 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
     try {
       return drawn(scene, effort, options, run.quiet);
     } catch (const gl::TooLarge& e) {
-      const std::string what = e.what();
-      const bool of_map = what.find("light's opacity map") != std::string::npos;
-      throw InvalidInput(of_map ? fmt::format("--map = {}: {}", options.effort.light_resolution, what) : what);
+      throw InvalidInput(e.what_is == gl::TooLarge::What::light_map
+                             ? fmt::format("--map = {}: {}", options.effort.light_resolution, e.what())
+                             : e.what());
     }
   }();
   if (interrupted()) throw std::runtime_error("interrupted");

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/revision.hpp"
+
 namespace sunfleck {
 namespace {
 
@@ -61,14 +63,14 @@ void ProductGraph::bring(Product product, std::span<const std::size_t> members,
   node.cost.reused += members.size() - due.size();
   if (due.empty()) return;
   const Stopwatch watch(node.cost.seconds);
-  const std::uint64_t given = std::exchange(revisions_, revisions_ + due.size());
+  const std::uint64_t first_revision = newRevisions(due.size());
   const std::size_t batches = progress ? std::clamp<std::size_t>(due.size() / kFewest, 1, kBatches) : 1;
   for (std::size_t batch = 0; batch < batches; ++batch) {
     const std::size_t begin = due.size() * batch / batches, end = due.size() * (batch + 1) / batches;
     tbb::parallel_for(begin, end, [&](std::size_t i) {
       make(due[i]);
       node.stale[due[i]] = 0;
-      node.revision[due[i]] = given + 1 + i;
+      node.revision[due[i]] = first_revision + i;
     });
     node.cost.made += end - begin;
     if (!goOn(progress, static_cast<double>(batch + 1) / static_cast<double>(batches)))

@@ -36,7 +36,8 @@ class ProductGraph {
   void resize(Product product, std::size_t members);  // new members are stale
 
   bool stale(Product product, std::size_t member) const { return products_[product].stale[member]; }
-  // Of what was last made of a member: another number for each making of any member of any product; 0: never made.
+  // Of what was last made of a member: another number for each making of any member of any product of any graph; 0:
+  // never made.
   std::uint64_t revision(Product product, std::size_t member) const { return products_[product].revision[member]; }
   // Marks a member stale and all that follows from it. What is stale already has stale followers and costs nothing.
   void touch(Product product, std::size_t member);
@@ -63,7 +64,6 @@ class ProductGraph {
     std::vector<Edge> edges;
   };
   std::vector<Node> products_;
-  std::uint64_t revisions_ = 0;  // given so far
 };
 
 // Adds the wall time from its making to its end.

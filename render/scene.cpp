@@ -90,18 +90,49 @@ Bounds bounds(const Scene& scene) {
   return box;
 }
 
+namespace {
+
+using Sides = std::array<glm::vec4, 4>;
+
+bool inside(const Sides& sides, const Bounds& box) {
+  return std::none_of(sides.begin(), sides.end(), [&](const glm::vec4& side) {
+    const glm::vec3 inward(side);
+    return glm::dot(inward, box.centre()) + side.w + 0.5f * glm::dot(glm::abs(inward), box.size()) < 0.f;
+  });
+}
+
+// Whether the shadow of a box on level ground may be: for no side all of its corners lie beyond. What is shaded reads
+// maps of the light, whose pixels reach beyond the leaves: by kRim at most in a map of four pixels and more.
+bool shadowInside(const Sides& sides, const Bounds& box, float ground, Direction light) {
+  constexpr float kRim = 0.25f;  // of the box's size
+  return std::none_of(sides.begin(), sides.end(), [&](const glm::vec4& side) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::vec3 way(corner & 1 ? 0.5f : -0.5f, corner & 2 ? 0.5f : -0.5f, corner & 4 ? 0.5f : -0.5f);
+      const glm::vec3 from = box.centre() + (1.f + kRim) * way * box.size();
+      const glm::vec3 at = from + (from.z - ground) / -light.z * light;
+      if (glm::dot(glm::vec3(side), at) + side.w >= 0.f) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace
+
 std::vector<std::size_t> treesInPicture(const Scene& scene, const Camera& camera) {
-  const auto sides = sidesOfSight(camera);
+  const Sides sides = sidesOfSight(camera);
   const std::vector<Bounds> prototypes = prototypeBounds(scene);
+  std::vector<Bounds> trees;
+  float ground = kInfinity;
+  for (const Placement& tree : scene.stand.trees) {
+    trees.push_back(standing(*scene.kindOf(tree).mesh, prototypes[tree.kind], tree));
+    ground = std::min(ground, trees.back().low.z);
+  }
+  const bool reflects = scene.ground_albedo != glm::vec3(0.f);
   std::vector<std::size_t> seen;
-  for (std::size_t i = 0; i < scene.stand.trees.size(); ++i) {
-    const Placement& tree = scene.stand.trees[i];
-    const Bounds box = standing(*scene.kindOf(tree).mesh, prototypes[tree.kind], tree);
-    const bool aside = std::any_of(sides.begin(), sides.end(), [&](const glm::vec4& side) {
-      const glm::vec3 inward(side);
-      return glm::dot(inward, box.centre()) + side.w + 0.5f * glm::dot(glm::abs(inward), box.size()) < 0.f;
-    });
-    if (scene.stand.period || !aside) seen.push_back(i);
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    const auto shades = [&](const Sun& sun) { return sun.up() && shadowInside(sides, trees[i], ground, sun.light()); };
+    if (scene.stand.period || inside(sides, trees[i]) || (reflects && std::ranges::any_of(scene.suns, shades)))
+      seen.push_back(i);
   }
   return seen;
 }

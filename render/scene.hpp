@@ -97,8 +97,8 @@ Bounds bounds(const Scene& scene);    // of all trees of the stand and of its me
 Camera cameraOf(const Scene& scene);  // the scene's camera, or one that shows the whole stand
 // The camera moved and widened so that the whole stand fills its picture; direction and pixels stay.
 Camera showingAll(const Scene& scene, Camera camera);
-// Trees of the stand that may be seen in the camera's picture; all of them in a periodic stand, which is drawn with
-// copies.
+// Trees of the stand of which the camera's picture may show something: themselves or, where the ground reflects, light
+// that comes from their leaves down to it. All of them in a periodic stand, which is drawn with copies.
 std::vector<std::size_t> treesInPicture(const Scene& scene, const Camera& camera);
 
 }  // namespace sunfleck

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/require.hpp"
+#include "core/revision.hpp"
 #include "grid/neighbours.hpp"
 #include "sky/sky_shares.hpp"
 
@@ -142,7 +143,8 @@ GeometryNeeds needsOf(Model model) {
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort, MapMaker light_map)
-    : foliage_(std::make_unique<FoliageStand>(FoliageEffort{.axes = spreadAxes(effort.sample_directions / 2),
+    : effort_(effort),
+      foliage_(std::make_unique<FoliageStand>(FoliageEffort{.axes = spreadAxes(effort.sample_directions / 2),
                                                             .sample_resolution = effort.sample_resolution,
                                                             .light_resolution = effort.light_resolution,
                                                             .cells = effort.cells,
@@ -292,7 +294,7 @@ void StandGeometry::updateEnvironment(std::span<const std::size_t> instances, co
     if (of.of_environment == revisions && of.ground_radiance == ground_radiance_) continue;
     of.of_environment = revisions;
     of.ground_radiance = ground_radiance_;
-    of.environment.revision = ++composed_;
+    of.environment.revision = newRevisions();
     changed.push_back(i);
   }
   tbb::parallel_for(std::size_t{0}, changed.size(), [&](std::size_t k) {

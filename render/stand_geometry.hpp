@@ -22,6 +22,8 @@ struct GeometryEffort {
   int sample_directions = 22;   // of the G-factor, even: both directions of half as many axes
   int sample_resolution = 256;  // pixels along the longer side of each of their maps
   int cells = 16;               // along the longest side of a tree
+
+  bool operator==(const GeometryEffort&) const = default;
 };
 
 // The models hold numbers for every leaf of every tree; pictures for every cell.
@@ -84,6 +86,7 @@ class StandGeometry {
   void update(const Scene& scene, const GeometryNeeds& needs = {},
               std::optional<std::span<const std::size_t>> trees = std::nullopt, const Progress& progress = {});
 
+  const GeometryEffort& effort() const { return effort_; }
   std::span<const StandLight> lights() const { return lights_; }             // at most kMostSuns; none by night
   const std::shared_ptr<const SkyMap>& sky() const { return shining_.sky; }  // none where it is black
 
@@ -101,7 +104,7 @@ class StandGeometry {
   const GroundSky& groundSky() const { return ground_sky_; }
   glm::vec3 groundRadiance() const { return ground_radiance_; }  // of the ground among the trees, in the mean [1/sr]
 
-  // Another number whenever the content is another; 0: there is none.
+  // Another number whenever the content is another, in whichever StandGeometry; 0: there is none.
   std::uint64_t cellsRevision(std::size_t kind) const;
   std::uint64_t lightRevision(std::size_t kind, std::size_t light) const;
   std::uint64_t compensationRevision(std::size_t tree, std::size_t light) const;
@@ -145,6 +148,7 @@ class StandGeometry {
   void updateGround(const Scene& scene, const GeometryNeeds& needs, const Progress& progress);
   void updateEnvironment(std::span<const std::size_t> instances, const GeometryNeeds& needs, const Progress& progress);
 
+  GeometryEffort effort_;
   std::unique_ptr<FoliageStand> foliage_;
   std::vector<Prototype> prototypes_;
   StandTrees trees_;
@@ -164,8 +168,7 @@ class StandGeometry {
   GroundSky ground_sky_;
   std::vector<glm::vec3> ground_irradiance_;
   glm::vec3 ground_radiance_{0.f};
-  bool environment_ = false;    // whether the cells have light of sky or ground
-  std::uint64_t composed_ = 0;  // environments so far
+  bool environment_ = false;  // whether the cells have light of sky or ground
 
   std::vector<ProductCost> costs_before_;
   double light_seconds_ = 0., compensation_seconds_ = 0.;

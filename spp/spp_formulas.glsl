@@ -54,29 +54,46 @@ SHARED_FN Number depthWithin(Number depth, Number thickness, Number w) {
   return min(max(depth, Number(0.0f)), deepest);
 }
 
+// (S2) What SPP's solution has of the leaves and the light's direction, the same at all depths of all slabs.
+struct SppConstants {
+  Number rate;      // k                                                                           [1], >= 0
+  Number loss;      // gamma / mu0, gamma = 1 - omega T                                            [1], >= 0
+  Number backward;  // omega R / mu0                                                               [1], >= 0
+};
+
+SHARED_FN SppConstants sppConstants(Number mu0, Number albedo, Number forward_share) {
+  Number backward_share = Number(1.0f) - forward_share;
+  Number lost = Number(1.0f) - albedo;
+  SppConstants leaves;
+  leaves.rate = sqrt((lost + Number(2.0f) * albedo * backward_share) * lost) / mu0;
+  leaves.loss = (lost + albedo * backward_share) / mu0;
+  leaves.backward = albedo * backward_share / mu0;
+  return leaves;
+}
+
 // (S2) SPP, Shinya et al. 2013 Eqs. 11 to 22 in a form whose every exponent is negative and that has no pole at
 // albedo 1, where its exponent k is 0.
-SHARED_FN SlabPowers sppPowers(Number depth, Number thickness, Number mu0, Number albedo, Number forward_share) {
-  Number backward_share = Number(1.0f) - forward_share;
+SHARED_FN SlabPowers sppPowersOf(SHARED_IN(SppConstants) leaves, Number depth, Number thickness) {
   Number w = min(thickness, Number(1.0e30f));  // as good as infinite, and its products are still numbers
   Number z = depthWithin(depth, thickness, w);
   Number rest = w - z;
-  Number lost = Number(1.0f) - albedo;
-  Number gamma = lost + albedo * backward_share;  // 1 - omega T
-  Number k = sqrt((lost + Number(2.0f) * albedo * backward_share) * lost) / mu0;
   // sh(x) = (1 - e^-2kx) / 2k and ch(x) = (1 + e^-2kx) / 2: sinh and cosh without their growing factor.
-  Number rate = Number(2.0f) * k;
-  Number fade_w = exp(-rate * w);
+  Number rate = Number(2.0f) * leaves.rate;
+  Number fade = exp(-leaves.rate * z);
   Number fade_rest = exp(-rate * rest);
+  Number fade_w = fade * fade * fade_rest;
   Number sh_w = rateQuotient(Number(0.0f), rate, w, Number(1.0f), fade_w);
   Number sh_rest = rateQuotient(Number(0.0f), rate, rest, Number(1.0f), fade_rest);
   Number ch_w = Number(0.5f) * (Number(1.0f) + fade_w);
   Number ch_rest = Number(0.5f) * (Number(1.0f) + fade_rest);
-  Number scale = exp(-k * z) / (mu0 * ch_w + gamma * sh_w);
+  Number scale = fade / (ch_w + leaves.loss * sh_w);
   SlabPowers powers;
-  powers.down = scale * (mu0 * ch_rest + gamma * sh_rest);
-  powers.up = scale * albedo * backward_share * sh_rest;
+  powers.down = scale * (ch_rest + leaves.loss * sh_rest);
+  powers.up = scale * leaves.backward * sh_rest;
   return powers;
+}
+SHARED_FN SlabPowers sppPowers(Number depth, Number thickness, Number mu0, Number albedo, Number forward_share) {
+  return sppPowersOf(sppConstants(mu0, albedo, forward_share), depth, thickness);
 }
 
 // (S3) Diffuse radiance of SPP, the same for all directions of a half: forward half, then backward half  [1/sr].

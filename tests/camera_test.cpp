@@ -130,3 +130,19 @@ TEST(R30_Camera, TreesBehindTheEyeAreNotSeen) {
   scene.stand.period = glm::vec2(200.f);
   EXPECT_EQ(treesInPicture(scene, camera).size(), 6u);
 }
+
+// Check which trees' light may be seen on the ground: of those whose shadow, cast as far as they are high by a sun at
+// 45 degrees, falls into the picture; not by night, nor where the ground reflects nothing.
+TEST(R30_Camera, TreesBesideAreSeenByTheirShadows) {
+  Scene scene = sceneOf({{0, 0, 0}, {0.2f, 0, 0}, {0, 0.2f, 4}});
+  scene.stand.trees = {{.position = {0, 0, 0}}, {.position = {-4, 0, 0}}, {.position = {4, 0, 0}}};
+  const Camera down{.elevation = glm::radians(90.f), .half_width = 1.f, .width = 8, .height = 8};
+  scene.suns = {{.zenith = glm::radians(45.f), .azimuth = glm::radians(180.f)}};  // light travels towards +x
+  EXPECT_EQ(treesInPicture(scene, down), (std::vector<std::size_t>{0}));
+  scene.ground_albedo = glm::vec3(0.f, 0.1f, 0.f);
+  EXPECT_EQ(treesInPicture(scene, down), (std::vector<std::size_t>{0, 1}));
+  scene.suns.push_back({.zenith = glm::radians(45.f)});
+  EXPECT_EQ(treesInPicture(scene, down), (std::vector<std::size_t>{0, 1, 2}));
+  for (Sun& sun : scene.suns) sun.zenith = glm::radians(120.f);
+  EXPECT_EQ(treesInPicture(scene, down), (std::vector<std::size_t>{0}));
+}

@@ -196,6 +196,6 @@ TEST(R27_FragmentShading, KeepsTablesWhileLeavesStay) {
   kind.leaf[2].reflectance = 0.1f;
   update(data, Model::pp, std::array{kind}, std::array{sunAlong(kDown)}, counting);
   EXPECT_EQ(made, 3);
-  EXPECT_EQ(data.constants[2], 0.1f);
+  EXPECT_EQ(data.constants[0][2], 0.1f);
   EXPECT_THROW(update(data, Model::pp, std::array{kind, kind}, std::array{sunAlong(kDown)}), std::invalid_argument);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "grid/deep_opacity_map.hpp"
 #include "plants/random_leaves.hpp"
@@ -115,12 +116,19 @@ TEST(D14_OpacityMapOnTheGpu, ServesAStand) {
       EXPECT_TRUE(std::ranges::equal(compensation, expected.compensation(tree, 0)));
     }
   }
-  EXPECT_EQ(&store.map(scene.kinds[0].mesh, suns[5], 64), &store.map(scene.kinds[0].mesh, suns[5], 64));
-  EXPECT_EQ(store.kept(), kMostSuns);
+  std::shared_ptr<const TreeMesh> tree = scene.kinds[0].mesh;
+  const gl::OpacityMap& kept = store.map(tree, suns[5], 64);
+  EXPECT_EQ(&store.map(tree, suns[5], 64), &kept);
+  EXPECT_EQ(store.find(tree, suns[5], 64), &kept);
+  EXPECT_EQ(store.find(tree, suns[5], 32), nullptr);
+  EXPECT_EQ(store.find(tree, suns[5 - kMostSuns], 64), nullptr);
+  store.map(tree, suns[5], 32);
+  EXPECT_EQ(store.find(tree, suns[5], 64), &kept);
+  const std::weak_ptr<const TreeMesh> former = std::exchange(tree, nullptr);
   scene.kinds[0].mesh = std::make_shared<TreeMesh>(randomCrown({.leaves = 300}, 5));
   expected.update(scene);
   stand.update(scene);
-  EXPECT_EQ(store.kept(), 1u);
+  EXPECT_TRUE(former.expired());
 }
 
 // (D14) Check that the same map is the same on every run, though crossings come in another order.

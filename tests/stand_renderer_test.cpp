@@ -15,6 +15,8 @@
 #include "plants/random_leaves.hpp"
 #include "render/compare/exact_powers.hpp"
 #include "render/gl/stand_picture.hpp"
+#include "render/gl/too_large.hpp"
+#include "render/gl/volume_texture.hpp"
 #include "render/shading/fragment_shading.hpp"
 #include "sky/sky_models.hpp"
 
@@ -232,6 +234,37 @@ TEST(R24_StandRenderer, LeavesOutWhatIsNotSeen) {
   }
 }
 
+// (R3) Check that light on the ground does not depend on what else a picture holds: beneath a tree that stands beside
+// the picture it is the same with the trees that the picture needs as with all.
+TEST(R3_StandRenderer, LightsTheGroundByTreesBesideThePicture) {
+  Woods woods;
+  woods.scene.suns.resize(1);
+  woods.scene.suns[0].zenith = 1.f;
+  const glm::vec3 light = woods.scene.sun().light(),
+                  middle = bounds(*woods.scene.kinds[0].mesh).centre() + woods.scene.stand.trees[4].position;
+  const float ground = bounds(woods.scene).low.z;
+  const Camera camera{.target = middle + (middle.z - ground) / -light.z * light,
+                      .elevation = 0.5f * kPi,
+                      .half_width = 0.4f,
+                      .width = 24,
+                      .height = 24};
+  const std::vector<std::size_t> trees = treesInPicture(woods.scene, camera);
+  EXPECT_LT(trees.size(), woods.scene.stand.trees.size());
+  woods.geometry.update(woods.scene, {}, trees);
+  const gl::PictureEffort effort{.samples = 1, .layers = {gl::Layer::multiple, gl::Layer::foliage}};
+  Drawing drawing(gl::drawnStand(woods.scene, woods.geometry));
+  const Image few = drawing.picture(camera, effort);
+  drawing.renderer.update(woods.stand());
+  const Image all = drawing.picture(camera, effort);
+  float least = 1.f;
+  for (int y = 0; y < all.height; ++y)
+    for (int x = 0; x < all.width; ++x) {
+      ASSERT_NEAR(value(few, x, y, "multiple.G"), value(all, x, y, "multiple.G"), kShading);
+      least = std::min(least, value(all, x, y, "foliage.G"));
+    }
+  EXPECT_LT(least, 0.95f);
+}
+
 // (R25) Check that with fewer and larger leaves the mean radiance and coverage stay within a few parts in a hundred,
 // which is what a random part of some hundred leaves spreads, that the leaves shown are the tree's, and the work is
 // less.
@@ -302,6 +335,41 @@ TEST(R24_StandRenderer, SendsWhatHasChanged) {
   sent = drawing.renderer.update(woods.stand());
   EXPECT_EQ(sent.meshes, 0u);
   EXPECT_GT(sent.maps, 0u);
+}
+
+// (R24) Check that a renderer tells products of one StandGeometry from those of another that has done the same work, by
+// day and by night: what it draws is what a new one draws, to the bit.
+TEST(R24_StandRenderer, TellsOneGeometryFromAnother) {
+  Woods woods;
+  for (const float zenith : {0.5f, 2.f}) {
+    for (Sun& sun : woods.scene.suns) sun.zenith = zenith;
+    woods.geometry = StandGeometry({.light_resolution = 64, .sample_resolution = 64, .cells = 8});
+    Drawing drawing(woods.stand());
+    const Image before = drawing.picture(woods.camera(48), {.samples = 1});
+    woods.geometry = StandGeometry({.light_resolution = 64, .sample_resolution = 8, .cells = 8});
+    drawing.renderer.update(woods.stand());
+    const Image after = drawing.picture(woods.camera(48), {.samples = 1});
+    EXPECT_TRUE(after.values != before.values);
+    EXPECT_TRUE(after.values == Drawing(woods.stand()).picture(woods.camera(48), {.samples = 1}).values);
+  }
+}
+
+// (R24) Check that a stand that is too large is refused as often as it is sent, and that nothing of it stays: maps of
+// more crossings than any memory holds, which are not there to be read, and cells wider than half of a texture.
+TEST(R24_StandRenderer, RefusesWhatIsTooLargeEachTime) {
+  Woods woods;
+  const gl::DrawnStand fits = woods.stand();
+  Drawing drawing(fits);
+  const Image before = drawing.picture(woods.camera(48), {.samples = 1});
+  gl::DrawnStand large_map = fits, large_cells = fits;
+  gl::LightMap& map = large_map.kinds[1].maps[0];
+  map.crossings = std::span(map.crossings.data(), std::size_t{1} << 40);
+  for (gl::DrawnKind& kind : large_cells.kinds) kind.cells.size = glm::ivec3(gl::VolumeTexture::longestSide() / 2 + 1);
+  for (const gl::DrawnStand* large : {&large_map, &large_cells}) {
+    for (int time = 0; time < 2; ++time) EXPECT_THROW(drawing.renderer.update(*large), gl::TooLarge);
+    drawing.renderer.update(fits);
+    EXPECT_TRUE(drawing.picture(woods.camera(48), {.samples = 1}).values == before.values);
+  }
 }
 
 // (R24) Check what is seen by no light at all, without trees, and of a single pixel: black leaves, the bare sky, ground

@@ -117,13 +117,8 @@ bool StandWorker::tell(double done) {
 
 void StandWorker::make(StandWish wish) {
   const auto start = Clock::now();
-  const auto same = [](const GeometryEffort& a, const GeometryEffort& b) {
-    return a.light_resolution == b.light_resolution && a.sample_directions == b.sample_directions &&
-           a.sample_resolution == b.sample_resolution && a.cells == b.cells;
-  };
-  const bool from_nothing = !geometry_ || !same(effort_, wish.effort);
+  const bool from_nothing = !geometry_ || geometry_->effort() != wish.effort;
   if (from_nothing) geometry_ = std::make_unique<StandGeometry>(wish.effort);
-  effort_ = wish.effort;
   const auto progress = [this](double done) { return tell(done); };
   geometry_->update(wish.scene, wish.needs, std::nullopt, progress);
   const double seconds = secondsSince(start);

@@ -22,6 +22,8 @@ Format formatOf(BufferTexture::Texel texel) {
       return {GL_RGB32UI, 12};
     case BufferTexture::Texel::rgba32ui:
       return {GL_RGBA32UI, 16};
+    case BufferTexture::Texel::r32f:
+      return {GL_R32F, 4};
     case BufferTexture::Texel::rgba32f:
       break;
   }
@@ -42,8 +44,12 @@ std::size_t mostTexels() {
 
 }  // namespace
 
-BufferTexture::BufferTexture(Texel texel, std::string what)
-    : format_(formatOf(texel).name), texel_bytes_(formatOf(texel).bytes), what_(std::move(what)), name_(created()) {
+BufferTexture::BufferTexture(Texel texel, std::string what, TooLarge::What what_is)
+    : format_(formatOf(texel).name),
+      texel_bytes_(formatOf(texel).bytes),
+      what_(std::move(what)),
+      what_is_(what_is),
+      name_(created()) {
   resize(0);
 }
 
@@ -53,7 +59,7 @@ void BufferTexture::resize(std::size_t texels) {
     why.precision(4);
     why << what_ << " " << 1e-6 * static_cast<double>(texels * texel_bytes_) << " MB: must be at most "
         << 1e-6 * static_cast<double>(mostTexels() * texel_bytes_) << " MB for this OpenGL";
-    throw TooLarge(why.str());
+    throw TooLarge(what_is_, why.str());
   }
   buffer_.emplace(Buffer::writable(texels * texel_bytes_));
   capacity_ = texels;

@@ -3,26 +3,21 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 
 #include "render/gl/buffer.hpp"
 #include "render/gl/object_name.hpp"
+#include "render/gl/too_large.hpp"
 
 namespace sunfleck::gl {
-
-// Something is more than this OpenGL lets a shader read.
-struct TooLarge : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // A list of texels that shaders read by their number. It can be longer than a storage block may be, and software
 // renderers read it faster.
 class BufferTexture {
  public:
-  enum class Texel { r32ui, rg32ui, rgb32ui, rgba32ui, rgba32f };
+  enum class Texel { r32ui, rg32ui, rgb32ui, rgba32ui, r32f, rgba32f };
   //   what  it holds, for messages: "the light's opacity map takes"
-  BufferTexture(Texel texel, std::string what);
+  BufferTexture(Texel texel, std::string what, TooLarge::What what_is = TooLarge::What::other);
 
   // Makes room for so many texels; what it held is lost. Throws TooLarge with the figure.
   void resize(std::size_t texels);
@@ -47,6 +42,7 @@ class BufferTexture {
   unsigned format_;
   std::size_t texel_bytes_, capacity_ = 0;
   std::string what_;
+  TooLarge::What what_is_;
   std::optional<Buffer> buffer_;
   ObjectName<&BufferTexture::destroy> name_;
 };

@@ -4,7 +4,7 @@
 #include <glm/common.hpp>
 #include <string>
 
-#include "render/gl/buffer_texture.hpp"
+#include "render/gl/too_large.hpp"
 
 namespace sunfleck::gl {
 namespace {
@@ -47,7 +47,6 @@ std::size_t CellAtlas::update(const DrawnStand& stand) {
     for (std::size_t light = 0; light < kMostLights; ++light)
       now[tree].compensation[light] = drawn.compensation[light].values.empty() ? 0 : drawn.compensation[light].revision;
     now[tree].sky_light = drawn.sky_light.values.empty() ? 0 : drawn.sky_light.revision;
-    now[tree].source = drawn.compensation[0].values.data();
   }
   glm::ivec3 block_size(1);
   for (const DrawnKind& kind : stand.kinds) block_size = glm::max(block_size, kind.cells.size);
@@ -56,26 +55,31 @@ std::size_t CellAtlas::update(const DrawnStand& stand) {
   const auto room = static_cast<std::uint32_t>(blocks_.x * blocks_.y * blocks_.z);
   if (!compensation_ || channels != compensation_->channels() || block_size != block_size_ || count > room ||
       (with_sky && sky_->size() == glm::ivec3(1))) {
+    const glm::ivec3 blocks = blocksFor(std::max<std::size_t>(count, 1), block_size);
+    compensation_.reset();  // until all is there
+    sky_.emplace(with_sky ? block_size * blocks : glm::ivec3(1), 4);
+    compensation_.emplace(block_size * blocks, channels);
     block_size_ = block_size;
-    blocks_ = blocksFor(std::max<std::size_t>(count, 1), block_size);
-    compensation_.emplace(block_size_ * blocks_, channels);
-    sky_.emplace(with_sky ? block_size_ * blocks_ : glm::ivec3(1), 4);
+    blocks_ = blocks;
     trees_.clear();
   }
   trees_.resize(now.size());
   std::size_t sent = 0;
   for (std::size_t tree = 0; tree < now.size(); ++tree)
-    if (now[tree].block != ~0u && now[tree] != trees_[tree]) sent += send(stand, tree, now[tree]);
+    if (now[tree].block != kNoBlock && now[tree] != trees_[tree]) sent += send(stand, tree, now[tree]);
   trees_ = std::move(now);
   return sent;
+}
+
+glm::ivec3 CellAtlas::cornerOf(std::uint32_t block) const {
+  const int number = static_cast<int>(block);
+  return block_size_ * glm::ivec3(number % blocks_.x, number / blocks_.x % blocks_.y, number / (blocks_.x * blocks_.y));
 }
 
 std::size_t CellAtlas::send(const DrawnStand& stand, std::size_t tree, const Held& now) {
   const DrawnTree& drawn = stand.trees[tree];
   const glm::ivec3 size = glm::max(stand.kinds[drawn.kind].cells.size, glm::ivec3(1));
-  const int block = static_cast<int>(now.block);
-  const glm::ivec3 corner =
-      block_size_ * glm::ivec3(block % blocks_.x, block / blocks_.x % blocks_.y, block / (blocks_.x * blocks_.y));
+  const glm::ivec3 corner = cornerOf(now.block);
   const auto cells = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y * size.z);
   const auto channels = static_cast<std::size_t>(compensation_->channels());
   std::vector<float> values(channels * cells, 1.f);

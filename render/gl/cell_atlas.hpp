@@ -17,21 +17,22 @@ class CellAtlas {
  public:
   // Sends what has changed; gives the bytes sent. Throws TooLarge with the figure.
   std::size_t update(const DrawnStand& stand);
-  // The block of a tree, or kNone.
-  std::uint32_t block(std::size_t tree) const { return trees_[tree].block; }
-  glm::ivec3 blockSize() const { return block_size_; }  // [cell]
-  glm::ivec3 blocks() const { return blocks_; }
+  bool has(std::size_t tree) const { return trees_[tree].block != kNoBlock; }
+  // Of a tree's block, where it is told; of the texture [cell]
+  glm::ivec3 corner(std::size_t tree) const { return has(tree) ? cornerOf(trees_[tree].block) : glm::ivec3(0); }
+  glm::ivec3 size() const { return block_size_ * blocks_; }
   //   compensation, sky  texture units
   void bind(unsigned compensation, unsigned sky) const;
 
  private:
+  static constexpr std::uint32_t kNoBlock = ~0u;
   struct Held {
-    std::uint32_t block = ~0u;
+    std::uint32_t block = kNoBlock;
     std::array<std::uint64_t, kMostLights> compensation{};  // revisions; 0: not told
     std::uint64_t sky_light = 0;
-    const void* source = nullptr;  // where they came from
     bool operator==(const Held&) const = default;
   };
+  glm::ivec3 cornerOf(std::uint32_t block) const;
   std::size_t send(const DrawnStand& stand, std::size_t tree, const Held& now);
 
   std::vector<Held> trees_;

@@ -4,20 +4,18 @@ layout(binding = 5) uniform sampler3D sky_cells;           // mean radiance of t
 
 // Where a place of a tree is in these textures; beyond the outermost cell centres their values go on.
 //   place  in the prototype's frame [m]
-vec3 inCells(vec3 place, uint kind, uint block) {
-  KindFrame of = kind_frames[kind];
+vec3 inCells(vec3 place, Tree tree) {
+  KindFrame of = kind_frames[tree.kind];
   vec3 cell = clamp((place - of.cell_low.xyz) * of.cell_low.w, vec3(0.5), vec3(of.cell_count.xyz) - 0.5);
-  uint across = cells.w, up = blocks.x;
-  uvec3 corner = uvec3(block % across, block / across % up, block / (across * up)) * cells.xyz;
-  return (cell + vec3(corner)) / vec3(textureSize(compensation_cells, 0));
+  return (cell + tree.cells) * cell_part.xyz;
 }
 
-float compensationAt(vec3 place, uint tree, uint light) {
-  uvec4 of = trees[tree].kind;
-  return of.y == kNone ? 1.0 : texture(compensation_cells, inCells(place, kindOf(tree), of.y))[light];
+float compensationAt(vec3 place, Tree tree, uint light) {
+  float told = textureLod(compensation_cells, inCells(place, tree), 0.0)[light];
+  return tree.has_cells ? told : 1.0;
 }
 
-vec3 skyLightAt(vec3 place, uint tree) {
-  uvec4 of = trees[tree].kind;
-  return of.y == kNone ? vec3(0.0) : texture(sky_cells, inCells(place, kindOf(tree), of.y)).rgb;
+vec3 skyLightAt(vec3 place, Tree tree) {
+  vec3 told = textureLod(sky_cells, inCells(place, tree), 0.0).rgb;
+  return tree.has_cells ? told : vec3(0.0);
 }

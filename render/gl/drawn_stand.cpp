@@ -28,7 +28,9 @@ DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry, const O
     drawn.cells = {.low = cells.low, .cell_size = cells.cell_size, .size = cells.size};
     for (std::size_t light = 0; light < stand.lights.size(); ++light) {
       drawn.maps.push_back(lightMap(geometry.light(kind, light), geometry.lightRevision(kind, light)));
-      if (made) drawn.maps.back().made = made->find(of_stand.mesh, stand.lights[light].along);
+      if (made)
+        drawn.maps.back().made =
+            made->find(of_stand.mesh, stand.lights[light].along, geometry.effort().light_resolution);
     }
   }
   for (std::size_t tree = 0; tree < scene.stand.trees.size(); ++tree) {

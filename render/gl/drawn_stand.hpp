@@ -38,7 +38,7 @@ struct DrawnKind {
   std::vector<LightMap> maps;  // of each light
 };
 
-// Values of all cells of a tree; another revision whenever they are others.
+// Values of all cells of a tree; another revision whenever they are others (core/revision.hpp).
 template <typename Value>
 struct CellValues {
   std::span<const Value> values;  // empty: not told

@@ -18,32 +18,12 @@ layout(std140, binding = 0) uniform Frame {
   vec4 sky_azimuth;   // x: where the sky's first column begins [rad]
   vec4 ground_cells;  // xy: corner of the cells in which the ground's skylight is told [m]; zw: 1 / extent [1/m]
   vec4 ground_open;   // rgb: irradiance of open ground by the sky [1]; w: 1 where cells are told
-  uvec4 counts;       // x: lights; y: trees of the stand; z: light told in layers; w: 1 where cells have light
-  uvec4 cells;        // xyz: cells of a block, one for each tree; w: blocks along x
-  uvec4 blocks;       // x: blocks along y; y, z: rows and columns of the sky, 0: none
+  vec4 cell_part;     // xyz: 1 / cells of the texture that holds those of all trees
+  uvec4 counts;       // x: lights; y, z: rows and columns of the sky, 0: none; w: light told in layers
   LightFrame light_frames[4];
 };
 
-// A tree of the stand.
-struct Tree {
-  vec4 position;  // xyz [m]
-  uvec4 kind;     // x: its kind; y: its block of cells, kNone: none
-};
-layout(std430, binding = 0) readonly buffer Trees { Tree trees[]; };
-
-// A drawn tree, a copy included.
-struct Drawn {
-  vec3 position;  // [m]
-  uint number;
-};
-layout(std430, binding = 1) readonly buffer DrawnTrees { Drawn drawn[]; };
-
-// Where ONE_KIND and LIGHTS are told, compilers know what is the same for all pixels.
-#ifdef ONE_KIND
-uint kindOf(uint tree) { return 0u; }
-#else
-uint kindOf(uint tree) { return trees[tree].kind.x; }
-#endif
+// What is the same for all pixels, and compilers then know: LIGHTS where there is one light, ONE_KIND, NO_SKY.
 #ifndef LIGHTS
 #define LIGHTS counts.x
 #endif
@@ -53,7 +33,8 @@ struct KindFrame {
   vec4 cell_low;    // xyz: corner of its cells [m]; w: cells per metre
   uvec4 cell_count; // xyz: cells; w: number of its first triangle
 };
-layout(std430, binding = 2) readonly buffer KindFrames { KindFrame kind_frames[]; };
+const uint kMostKinds = 64u;
+layout(std140, binding = 2) uniform KindFrames { KindFrame kind_frames[kMostKinds]; };
 
 // The map of a kind along a light, number 4 * kind + light.
 struct MapFrame {
@@ -61,7 +42,37 @@ struct MapFrame {
   vec4 corner;   // xy: of pixel (0, 0)                                                     [m]
   uvec4 size;    // xy: [pixel]; z: number of its first line in map_lines; w: of its first crossing in map_crossings
 };
-layout(std430, binding = 3) readonly buffer MapFrames { MapFrame map_frames[]; };
+layout(std140, binding = 3) uniform MapFrames { MapFrame map_frames[4u * kMostKinds]; };
+
+// A tree of the stand: two texels of bits.
+struct Tree {
+  vec3 position;  // [m]
+  uint kind;
+  vec3 cells;     // first of its cells in their texture
+  bool has_cells;
+};
+layout(binding = 12) uniform usamplerBuffer trees;
+Tree treeAt(uint number) {
+  uvec4 stands = texelFetch(trees, 2 * int(number)), block = texelFetch(trees, 2 * int(number) + 1);
+#ifdef ONE_KIND
+  stands.w = 0u;
+#endif
+  return Tree(uintBitsToFloat(stands.xyz), stands.w, vec3(block.xyz), block.w != 0u);
+}
+
+#ifdef ONE_KIND
+uint kindOf(uint tree) { return 0u; }
+#else
+uint kindOf(uint tree) { return texelFetch(trees, 2 * int(tree)).w; }
+#endif
+
+// A tree that is drawn, or that stands in a light; a copy included. A texel of bits.
+struct Standing {
+  vec3 position;  // [m]
+  uint tree;
+};
+Standing standingAt(uvec4 bits) { return Standing(uintBitsToFloat(bits.xyz), bits.w); }
+layout(binding = 13) uniform usamplerBuffer drawn;
 
 const uint kNoLeaf = 0xffffffffu;
 const uint kNone = 0xffffffffu, kGround = 0xfffffffeu;  // in place of a drawn tree

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/gl/buffer_texture.hpp"
 #include "render/gl/detail/frame_data.hpp"
+#include "render/gl/too_large.hpp"
 
 namespace sunfleck::gl {
 namespace {

@@ -22,7 +22,7 @@ struct LightMap {
   std::span<const std::uint32_t> first;  // those of pixel i are crossings[first[i]] .. crossings[first[i + 1] - 1]
   std::span<const Crossing> crossings;   // sorted by depth within a pixel
   std::span<const float> wood_depth;     // per pixel; infinity where there is no wood [m]
-  std::uint64_t revision = 1;            // another whenever the content is another
+  std::uint64_t revision = 1;            // another whenever the content is another (core/revision.hpp)
   const OpacityMap* made = nullptr;      // the same on the graphics card, if it made the map
 };
 LightMap lightMap(const DeepOpacityMap& map, std::uint64_t revision = 1);

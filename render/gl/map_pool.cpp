@@ -1,5 +1,7 @@
 #include "render/gl/map_pool.hpp"
 
+#include <utility>
+
 #include "render/gl/detail/frame_data.hpp"
 
 namespace sunfleck::gl {
@@ -13,8 +15,9 @@ std::size_t withRoom(std::size_t crossings) {
 }  // namespace
 
 MapPool::MapPool()
-    : lines_(BufferTexture::Texel::rgb32ui, "the light's opacity map takes"),
-      crossings_(BufferTexture::Texel::rg32ui, "the light's opacity map takes") {}
+    : lines_(BufferTexture::Texel::rgb32ui, "the light's opacity map takes", TooLarge::What::light_map),
+      crossings_(BufferTexture::Texel::rg32ui, "the light's opacity map takes", TooLarge::What::light_map),
+      frames_(Buffer::writable(kMostLights * kMostKinds * sizeof(detail::MapFrame))) {}
 
 bool MapPool::fits(const DrawnStand& stand) const {
   if (held_.size() != kMostLights * stand.kinds.size()) return false;
@@ -28,21 +31,23 @@ bool MapPool::fits(const DrawnStand& stand) const {
 }
 
 void MapPool::makeRoom(const DrawnStand& stand) {
-  held_.assign(kMostLights * stand.kinds.size(), {});
+  held_.clear();  // until there is room
+  std::vector<Held> held(kMostLights * stand.kinds.size());
   std::size_t lines = 0, crossings = 0;
   for (std::size_t kind = 0; kind < stand.kinds.size(); ++kind)
     for (std::size_t light = 0; light < stand.kinds[kind].maps.size(); ++light) {
       const LightMap& map = stand.kinds[kind].maps[light];
-      Held& held = held_[kMostLights * kind + light];
-      held = {.first_line = lines,
+      Held& room = held[kMostLights * kind + light];
+      room = {.first_line = lines,
               .lines = withRoom(map.wood_depth.size()),
               .first_crossing = crossings,
               .crossings = withRoom(map.crossings.size())};
-      lines += held.lines;
-      crossings += held.crossings;
+      lines += room.lines;
+      crossings += room.crossings;
     }
   lines_.resize(lines);
   crossings_.resize(crossings);
+  held_ = std::move(held);
 }
 
 std::size_t MapPool::send(const LightMap& map, Held& held) {
@@ -58,7 +63,6 @@ std::size_t MapPool::send(const LightMap& map, Held& held) {
     lines.push_back({.first = map.first[i], .end = map.first[i + 1], .wood_depth = map.wood_depth[i]});
   lines_.write(held.first_line, std::span<const detail::MapLine>(lines));
   crossings_.write(held.first_crossing, map.crossings);
-  held.source = map.crossings.data();
   return lines.size() * sizeof lines[0] + map.crossings.size_bytes();
 }
 
@@ -70,21 +74,21 @@ std::size_t MapPool::update(const DrawnStand& stand) {
     for (std::size_t light = 0; light < stand.kinds[kind].maps.size(); ++light) {
       const LightMap& map = stand.kinds[kind].maps[light];
       Held& held = held_[kMostLights * kind + light];
-      if (map.revision != held.revision || map.crossings.data() != held.source) sent += send(map, held);
+      if (map.revision != held.revision) sent += send(map, held);
       frames[kMostLights * kind + light] = {
           .origin = glm::vec4(map.origin, map.pixel_size),
           .corner = glm::vec4(map.corner, 0.f, 0.f),
           .size = {static_cast<std::uint32_t>(map.size.x), static_cast<std::uint32_t>(map.size.y),
                    static_cast<std::uint32_t>(held.first_line), static_cast<std::uint32_t>(held.first_crossing)}};
     }
-  frames_.emplace(frames);
+  frames_.write(0, std::as_bytes(std::span(frames)));
   return sent;
 }
 
 void MapPool::bind(unsigned lines, unsigned crossings, unsigned frames) const {
   lines_.bind(lines);
   crossings_.bind(crossings);
-  frames_->bindStorage(frames);
+  frames_.bindUniform(frames);
 }
 
 }  // namespace sunfleck::gl

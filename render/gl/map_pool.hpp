@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "render/gl/buffer.hpp"
@@ -17,13 +16,12 @@ class MapPool {
   MapPool();
   // Sends the maps that are others; gives the bytes sent. Throws TooLarge with the figure.
   std::size_t update(const DrawnStand& stand);
-  //   lines, crossings  texture units; frames  a storage block
+  //   lines, crossings  texture units; frames  a uniform block
   void bind(unsigned lines, unsigned crossings, unsigned frames) const;
 
  private:
   struct Held {
     std::uint64_t revision = 0;
-    const Crossing* source = nullptr;               // where it came from
     std::size_t first_line = 0, lines = 0;          // room
     std::size_t first_crossing = 0, crossings = 0;  // room
   };
@@ -33,7 +31,7 @@ class MapPool {
 
   BufferTexture lines_, crossings_;
   std::vector<Held> held_;  // 4 * kind + light
-  std::optional<Buffer> frames_;
+  Buffer frames_;
 };
 
 }  // namespace sunfleck::gl

@@ -11,8 +11,7 @@ const OpacityMap& OpacityMapStore::map(const std::shared_ptr<const TreeMesh>& me
   auto tree = std::ranges::find(trees_, mesh, &Tree::mesh);
   if (tree == trees_.end()) tree = trees_.insert(tree, {.mesh = mesh, .mapped = MappedTree(*mesh), .maps = {}});
   auto& maps = tree->maps;
-  const auto found = std::ranges::find_if(
-      maps, [&](const Kept& kept) { return kept.along == along && kept.resolution == resolution; });
+  const auto found = std::ranges::find_if(maps, [&](const Kept& kept) { return kept.is(along, resolution); });
   if (found != maps.end())
     maps.splice(maps.begin(), maps, found);
   else
@@ -21,17 +20,12 @@ const OpacityMap& OpacityMapStore::map(const std::shared_ptr<const TreeMesh>& me
   return maps.front().map;
 }
 
-const OpacityMap* OpacityMapStore::find(const std::shared_ptr<const TreeMesh>& mesh, Direction along) const {
+const OpacityMap* OpacityMapStore::find(const std::shared_ptr<const TreeMesh>& mesh, Direction along,
+                                        int resolution) const {
   const auto tree = std::ranges::find(trees_, mesh, &Tree::mesh);
   if (tree == trees_.end()) return nullptr;
-  const auto found = std::ranges::find(tree->maps, along, &Kept::along);
+  const auto found = std::ranges::find_if(tree->maps, [&](const Kept& kept) { return kept.is(along, resolution); });
   return found == tree->maps.end() ? nullptr : &found->map;
-}
-
-std::size_t OpacityMapStore::kept() const {
-  std::size_t count = 0;
-  for (const Tree& tree : trees_) count += tree.maps.size();
-  return count;
 }
 
 }  // namespace sunfleck::gl

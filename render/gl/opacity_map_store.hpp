@@ -17,15 +17,15 @@ class OpacityMapStore {
   explicit OpacityMapStore(const Context& context) : maker_(context) {}
   const OpacityMap& map(const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution);
 
-  // The last that was made of that tree along that light, if it is still there.
-  const OpacityMap* find(const std::shared_ptr<const TreeMesh>& mesh, Direction along) const;
-  std::size_t kept() const;  // number of maps
+  // The one that was made of that tree, if it is still there.
+  const OpacityMap* find(const std::shared_ptr<const TreeMesh>& mesh, Direction along, int resolution) const;
 
  private:
   struct Kept {
     Direction along;
     int resolution;
     OpacityMap map;
+    bool is(Direction of, int pixels) const { return along == of && resolution == pixels; }
   };
   struct Tree {
     std::shared_ptr<const TreeMesh> mesh;

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "render/gl/too_large.hpp"
+
 namespace sunfleck::gl {
 namespace {
 
@@ -42,7 +44,7 @@ void requireRoom(double bytes, const std::string& what) {
   why.precision(4);
   why << what << " takes " << 1e-6 * bytes << " MB in one piece: must be at most "
       << 1e-6 * static_cast<double>(Buffer::largestStorage()) << " MB for this OpenGL";
-  throw TooLarge(why.str());
+  throw TooLarge(TooLarge::What::light_map, why.str());
 }
 
 std::vector<glm::uvec4> trianglesOf(const TreeMesh& mesh) {
@@ -128,8 +130,9 @@ OpacityMap OpacityMapMaker::make(const MappedTree& tree, Direction along, int re
   sum(found, false);
   std::vector<std::uint32_t> runs = found.read<std::uint32_t>();
   if (runs.front() > kMostOnLine)
-    throw TooLarge("a line of the light's opacity map crosses " + std::to_string(runs.front()) +
-                   " leaves: must be at most " + std::to_string(kMostOnLine) + " for OpenGL");
+    throw TooLarge(TooLarge::What::light_map, "a line of the light's opacity map crosses " +
+                                                  std::to_string(runs.front()) + " leaves: must be at most " +
+                                                  std::to_string(kMostOnLine) + " for OpenGL");
   std::uint64_t crossings_found = 0;
   for (std::uint32_t& run : std::span(runs).subspan(1)) {
     const std::uint32_t of_run = run;

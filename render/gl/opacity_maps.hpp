@@ -6,7 +6,6 @@
 #include "core/tree_mesh.hpp"
 #include "grid/deep_opacity_map.hpp"
 #include "render/gl/buffer.hpp"
-#include "render/gl/buffer_texture.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/program.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "render/gl/buffer_texture.hpp"
+#include "render/gl/too_large.hpp"
 
 namespace sunfleck::gl {
 namespace {

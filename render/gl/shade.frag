@@ -34,155 +34,135 @@ Sight sightThrough(vec2 pixel) {
   return eye.w > 0.0 ? Sight(eye.xyz, normalize(aside)) : Sight(eye.xyz + aside, sight.xyz);
 }
 
-// Sums over the lights.
-Shaded light_sum = Shaded(vec3(0.0), vec3(0.0), vec3(0.0));
-vec3 sky_sum = vec3(0.0);
-void addLight(Shaded shaded, uint light, Foliage foliage, float compensation) {
-  light_sum.direct += shaded.direct;
-  light_sum.single += shaded.single;
-  light_sum.multiple += shaded.multiple;
-#ifdef LAYERS
-  if (light == counts.z) foliage_of_light = vec4(foliage.before, foliage.beyond, foliage.visible, compensation);
-#endif
-}
+// What a pixel shows. Leaves, wood and ground go the same way from here, as far as graphics cards that take every way
+// for every pixel, and mask what does not hold, would else do all twice.
+struct Place {
+  vec3 lit;       // whose light it has, from `stands`: of a leaf or twig the true one's, however enlarged it is drawn [m]
+  vec3 stands;    // its tree in the stand's own period; 0 for the ground [m]
+  uint number;    // of the tree; kNone for the ground
+  bool is_leaf;
+  float error;    // how far its wood may lie from the full tree's [m]
+  float away;     // from the line of sight's start [m]
+  float coverage; // 0 where there is nothing
+  Surface surface;
+};
 
-void addSky(Surface surface, vec3 radiance) {
-  Shaded shaded = shadeBySky(surface, radiance);
-  sky_sum = shaded.direct + shaded.single + shaded.multiple;
-}
-
-void shadeTree(uvec2 id, Sight look) {
-  vec3 stands_here = drawn[id.x].position;
-  uint tree = id.x % counts.y;
-  uint kind = kindOf(tree);
-  int triangle = 2 * int(kind_frames[kind].cell_count.w + id.y);
-  vec4 plane = uintBitsToFloat(texelFetch(triangles, triangle));
-  uvec4 of_piece = texelFetch(triangles, triangle + 1);
+Place placeOnTree(uint triangle, Standing stands, Tree tree, Sight look) {
+  int texel = 2 * int(kind_frames[tree.kind].cell_count.w + triangle);
+  vec4 plane = uintBitsToFloat(texelFetch(triangles, texel));
+  uvec4 of_piece = texelFetch(triangles, texel + 1);
   float enlargement = length(plane.xyz);
   vec3 normal = plane.xyz / enlargement;
-  vec3 from = look.from - stands_here;
-  float away = (plane.w - dot(normal, from)) / dot(normal, look.along);
-  vec3 place = from + away * look.along;
-  if (dot(normal, look.along) > 0.0) normal = -normal;
+  vec3 from = look.from - stands.position;
+  float slant = dot(normal, look.along), away = (plane.w - dot(normal, from)) / slant;
+  vec3 there = from + away * look.along, middle = uintBitsToFloat(of_piece.xyz);
+  bool whole = of_piece.w == kNoLeaf, is_leaf = of_piece.w < kThinWood;
 
-  bool wood = of_piece.w >= kThinWood;
-  uint leaf = wood ? kNoLeaf : of_piece.w;
-  vec3 middle = uintBitsToFloat(of_piece.xyz);
-  float error = of_piece.w == kNoLeaf ? middle.x : 0.0;
-  // The light is that of the true leaf or twig, however enlarged it is drawn.
-  vec3 lit = of_piece.w == kNoLeaf ? place : middle + (place - middle) / enlargement;
-  Surface surface = wood ? woodSurface(kind, tree, normal, -look.along)
-                         : leafSurface(kind, tree, leaf, normal, -look.along);
-  for (uint light = 0u; light < LIGHTS; ++light) {
-    float bias = woodBias(wood ? dot(normal, light_frames[light].travel.xyz) : 1.0);
-    Foliage foliage = foliageAt(light, lit, trees[tree].position.xyz, tree, leaf, vec2(bias, error));
-    // A leaf is itself a part of the slab's thickness.
-    float thickness = foliage.before + foliage.beyond + (wood ? 0.0 : 1.0);
-    float compensation = NEEDS_COMPENSATION ? compensationAt(lit, tree, light) : 1.0;
-    addLight(shadeByLight(surface, foliage, thickness, compensation, light), light, foliage, compensation);
-  }
-  if (counts.w > 0u) addSky(surface, skyLightAt(lit, tree));
-#ifdef LAYERS
-  geometry = vec4(normal, dot(away * look.along, sight.xyz));
-  ids = uvec4(id, kind, leaf);
-#endif
+  Place place;
+  place.lit = whole ? there : middle + (there - middle) / enlargement;
+  place.stands = tree.position;
+  place.number = stands.tree;
+  place.is_leaf = is_leaf;
+  place.error = whole ? middle.x : 0.0;
+  place.away = away;
+  place.coverage = 1.0;
+  if (slant > 0.0) normal = -normal;
+  place.surface = leafSurface(tree.kind, stands.tree, of_piece.w, normal, -look.along);
+  if (!is_leaf) place.surface = woodSurface(tree.kind, stands.tree, normal, -look.along);
+  return place;
 }
 
-// The last leaf that light on its way to a place of the ground can meet: what sends the slab's light down to here.
-struct LastLeaf {
-  uint tree;   // kNone: there is no leaf
-  vec3 place;  // in the tree's frame [m]
-};
-LastLeaf lastLeaf(uint light, vec3 here) {
-  LastLeaf last = LastLeaf(kNone, vec3(0.0));
-  float nearest = 1e30;
-  uvec2 casters = castersAt(light, here);
-  for (uint c = casters.x; c < casters.y; ++c) {
-    Caster caster = casterAt(c);
-    MapFrame map = map_frames[4u * kindOf(caster.tree) + light];
-    vec3 in_tree = inLight(light, here - caster.position) + map.origin.xyz;
-    Nearest near = nearestPixels(map, in_tree);
-    ivec2 pixel = near.pixel + ivec2(greaterThan(near.part, vec2(0.5)));
-    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(map.size.xy)))) continue;
-    uvec3 line = texelFetch(map_lines, int(map.size.z) + pixel.y * int(map.size.x) + pixel.x).xyz;
-    if (line.x == line.y) continue;
-    float way = in_tree.z - uintBitsToFloat(texelFetch(map_crossings, int(map.size.w + line.y) - 1).x);
-    if (way >= nearest) continue;
-    nearest = way;
-    last = LastLeaf(caster.tree, here - caster.position - way * light_frames[light].travel.xyz);
-  }
-  return last;
+// (R3) The ground: a Lambertian disc that fades towards its rim; under a sky it goes on to the horizon.
+Place placeOnGround(Sight look) {
+  Place place;
+  place.away = (ground.z - look.from.z) / look.along.z;
+  vec3 there = look.from + place.away * look.along;
+  float from_centre = counts.y > 0u ? 0.0 : distance(there.xy, ground.xy) / ground.w;
+  bool seen = ground_albedo.w > 0.0 && look.along.z < 0.0 && from_centre < 1.0 && (eye.w == 0.0 || place.away > 0.0);
+  place.coverage = seen ? 1.0 - smoothstep(0.6, 1.0, from_centre) : 0.0;
+  place.lit = seen ? there : ground.xyz;
+  if (period.x > 0.0) place.lit.xy -= floor((place.lit.xy - period.zw) / period.xy) * period.xy;
+  place.stands = vec3(0.0);
+  place.number = kNone;
+  place.is_leaf = false;
+  place.error = 0.0;
+  place.surface = opaqueSurface(0u, kNone, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), -look.along);
+  return place;
 }
 
+// (D12) Mean radiance of the sky's light on a place of the ground: beyond the cells it lies open.
 const float kPi = 3.14159265;
-
-// (D12) What a place of the ground receives of the sky: beyond the cells it lies open.
 vec3 skyOnGround(vec2 here) {
   vec2 at = (here - ground_cells.xy) * ground_cells.zw;
   bool told = ground_open.w > 0.0 && all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
-  return told ? textureLod(ground_sky, at, 0.0).rgb : ground_open.rgb;
-}
-
-// (R3) The ground: a Lambertian disc that fades towards its rim; under a sky it goes on to the horizon. Gives its
-// coverage.
-float shadeGround(Sight look) {
-  if (ground_albedo.w == 0.0 || look.along.z >= 0.0) return 0.0;
-  float away = (ground.z - look.from.z) / look.along.z;
-  vec3 place = look.from + away * look.along;
-  float from_centre = blocks.y > 0u ? 0.0 : distance(place.xy, ground.xy) / ground.w;
-  if (from_centre >= 1.0 || (eye.w > 0.0 && away <= 0.0)) return 0.0;
-  vec3 here = place;
-  if (period.x > 0.0) here.xy -= floor((here.xy - period.zw) / period.xy) * period.xy;
-  for (uint light = 0u; light < LIGHTS; ++light) {
-    Foliage foliage = foliageAt(light, here, vec3(0.0), kNone, kNoLeaf, vec2(1.0, 0.0));
-    LastLeaf last = lastLeaf(light, here);
-    float compensation =
-        NEEDS_COMPENSATION && last.tree != kNone ? compensationAt(last.place, last.tree, light) : 1.0;
-    uint kind = last.tree == kNone ? 0u : kindOf(last.tree);
-    Surface surface = opaqueSurface(kind, kNone, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), -look.along);
-    addLight(shadeByLight(surface, foliage, foliage.before + foliage.beyond, compensation, light), light, foliage,
-             compensation);
-  }
-  if (blocks.y > 0u)
-    addSky(opaqueSurface(0u, kNone, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), -look.along), skyOnGround(here.xy) / kPi);
-#ifdef LAYERS
-  geometry = vec4(0.0, 0.0, 1.0, dot(away * look.along, sight.xyz));
-  ids = uvec4(kGround, kNone, kNone, kNoLeaf);
-#endif
-  return 1.0 - smoothstep(0.6, 1.0, from_centre);
+  vec3 in_cells = textureLod(ground_sky, at, 0.0).rgb;
+  return (told ? in_cells : ground_open.rgb) / kPi;
 }
 
 vec3 skyTowards(vec3 to_sky) {
-  if (blocks.y == 0u || to_sky.z <= 0.0) return vec3(0.0);
-  vec2 rows_columns = vec2(blocks.yz);
+  if (counts.y == 0u || to_sky.z <= 0.0) return vec3(0.0);
+  vec2 rows_columns = vec2(counts.yz);
   float row = acos(min(to_sky.z, 1.0)) / (0.5 * kPi) * rows_columns.x;
   float turn = (atan(to_sky.y, to_sky.x) - sky_azimuth.x) / (2.0 * kPi);
   float column = (turn - floor(turn)) * rows_columns.y;
-  return texelFetch(sky_radiance, min(ivec2(column, row), ivec2(blocks.zy) - 1), 0).rgb;
+  return texelFetch(sky_radiance, min(ivec2(column, row), ivec2(counts.zy) - 1), 0).rgb;
 }
 
 void main() {
-#ifdef LAYERS
-  geometry = vec4(0.0, 0.0, 0.0, uintBitsToFloat(0x7f800000u));
-  foliage_of_light = vec4(0.0);
-  ids = uvec4(kNone, kNone, kNone, kNoLeaf);
-#endif
   Sight look = sightThrough(gl_FragCoord.xy + vec2(pixel_right.w, pixel_up.w));
   uvec2 id = texelFetch(visible, ivec2(gl_FragCoord.xy), 0).xy;
-  float coverage = 1.0;
-  vec3 behind = vec3(0.0);
-  if (id.x < kGround) {
-    shadeTree(id, look);
-  } else {
-    coverage = shadeGround(look);
-    behind = skyTowards(look.along);
+  bool of_tree = id.x < kGround;
+  Standing stands = standingAt(texelFetch(drawn, int(of_tree ? id.x : 0u)));
+  Tree tree = treeAt(stands.tree);
+  Place place = placeOnGround(look);
+  if (of_tree) place = placeOnTree(id.y, stands, tree, look);
+
+  Shaded sum = Shaded(vec3(0.0), vec3(0.0), vec3(0.0));
+  vec4 of_light = vec4(0.0);
+  for (uint light = 0u; light < LIGHTS; ++light) {
+    float cosine = dot(place.surface.normal, light_frames[light].travel.xyz);
+    float bias = woodBias(of_tree && !place.is_leaf ? cosine : 1.0);
+    LastLeaf last;
+    Foliage foliage = foliageAt(light, place.lit, place.stands, place.number, place.surface.leaf,
+                                vec2(bias, place.error), last);
+    vec3 in_tree = place.lit;
+    bool in_foliage = true;
+    // The ground has the light of the last leaves above it.
+    if (!of_tree) {
+      in_foliage = last.way < 1e30;
+      in_tree -= last.stands.position + last.way * light_frames[light].travel.xyz;
+      tree = treeAt(in_foliage ? last.stands.tree : 0u);
+      place.surface.kind = in_foliage ? tree.kind : 0u;
+    }
+    float compensation = NEEDS_COMPENSATION && in_foliage ? compensationAt(in_tree, tree, light) : 1.0;
+    // A leaf is itself a part of the slab's thickness.
+    float thickness = foliage.before + foliage.beyond + (place.is_leaf ? 1.0 : 0.0);
+    Shaded shaded = shadeByLight(place.surface, foliage, thickness, compensation, light);
+    sum.direct += shaded.direct;
+    sum.single += shaded.single;
+    sum.multiple += shaded.multiple;
+    if (light == counts.w) of_light = vec4(foliage.before, foliage.beyond, foliage.visible, compensation);
   }
-  vec3 of_lights = light_sum.direct + light_sum.single + light_sum.multiple;
-  total = vec4(coverage * (of_lights + sky_sum) + (1.0 - coverage) * behind, coverage);
+  vec3 sky_sum = vec3(0.0), behind = vec3(0.0);
+#ifndef NO_SKY
+  vec3 sky = counts.y > 0u ? skyOnGround(place.lit.xy) : vec3(0.0);
+  if (of_tree) sky = skyLightAt(place.lit, tree);
+  Shaded by_sky = shadeBySky(place.surface, sky);
+  sky_sum = by_sky.direct + by_sky.single + by_sky.multiple;
+  behind = skyTowards(look.along);
+#endif
+  float coverage = place.coverage;
+  vec3 seen = sum.direct + sum.single + sum.multiple + sky_sum;
+  total = coverage > 0.0 ? vec4(coverage * seen + (1.0 - coverage) * behind, coverage) : vec4(behind, 0.0);
 #ifdef LAYERS
-  direct = vec4(coverage * light_sum.direct, coverage);
-  single = vec4(coverage * light_sum.single, coverage);
-  multiple = vec4(coverage * light_sum.multiple, coverage);
-  of_sky = vec4(coverage * sky_sum + (1.0 - coverage) * behind, coverage);
+  bool nothing = coverage == 0.0;
+  float depth = dot(place.away * look.along, sight.xyz);
+  geometry = nothing ? vec4(0.0, 0.0, 0.0, uintBitsToFloat(0x7f800000u)) : vec4(place.surface.normal, depth);
+  foliage_of_light = nothing ? vec4(0.0) : of_light;
+  ids = of_tree ? uvec4(id, tree.kind, place.surface.leaf) : uvec4(nothing ? kNone : kGround, kNone, kNone, kNoLeaf);
+  direct = nothing ? vec4(0.0) : vec4(coverage * sum.direct, coverage);
+  single = nothing ? vec4(0.0) : vec4(coverage * sum.single, coverage);
+  multiple = nothing ? vec4(0.0) : vec4(coverage * sum.multiple, coverage);
+  of_sky = nothing ? vec4(behind, 0.0) : vec4(coverage * sky_sum + (1.0 - coverage) * behind, coverage);
 #endif
 }

@@ -9,9 +9,15 @@ layout(std140, binding = 1) uniform Surfaces {
   KindOptics kinds[kMostSurfaceKinds];
   ShadingLight lights[kMostShadingLights];
 };
-layout(std430, binding = 14) readonly buffer GlossTables { float gloss_tables[]; };
-#define MODEL_CONSTANTS(Type) \
-  layout(std430, binding = 15) readonly buffer ModelConstants { Type model_constants[]; }
+layout(binding = 10) uniform samplerBuffer gloss_tables;   // a number in each texel
+layout(binding = 11) uniform samplerBuffer model_numbers;
+float glossTableNumber(uint number) { return texelFetch(gloss_tables, int(number)).r; }
+vec4 modelNumbers(uint number) { return texelFetch(model_numbers, int(number)); }
+
+// Where GLOSSY is told, compilers know that no leaf has a gloss.
+#ifndef GLOSSY
+#define GLOSSY true
+#endif
 
 #include "render/shading/surface.glsl"
 #include MODEL

@@ -35,13 +35,16 @@ ShadingBuffers::ShadingBuffers(const ShadingData& data)
         const SurfacesData surfaces = surfacesData(data);
         return Buffer(std::span(&surfaces, 1));
       }()),
-      gloss_(data.gloss_tables),
-      constants_(data.constants) {}
+      gloss_tables_(BufferTexture::Texel::r32f, "the tables of leaves' gloss take"),
+      model_numbers_(BufferTexture::Texel::rgba32f, "the tables of the model take") {
+  gloss_tables_.assign(std::span<const float>(data.gloss_tables));
+  model_numbers_.assign(std::span<const glm::vec4>(data.constants));
+}
 
 void ShadingBuffers::bind() const {
   surfaces_.bindUniform(1);
-  gloss_.bindStorage(14);
-  constants_.bindStorage(15);
+  gloss_tables_.bind(10);
+  model_numbers_.bind(11);
 }
 
 }  // namespace sunfleck::gl

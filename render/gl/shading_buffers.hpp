@@ -3,6 +3,7 @@
 #include <string>
 
 #include "render/gl/buffer.hpp"
+#include "render/gl/buffer_texture.hpp"
 #include "render/gl/program.hpp"
 #include "render/shading/shading_data.hpp"
 
@@ -15,11 +16,14 @@ Shader shadingShader(Stage stage, const std::string& path, Model model);
 class ShadingBuffers {
  public:
   explicit ShadingBuffers(const shading::ShadingData& data);
-  // For all shaders of the current context: uniform block 1, storage blocks 14 and 15.
+  // For all shaders of the current context: uniform block 1, texture units 10 and 11.
   void bind() const;
+  // Whether a leaf has a gloss; if none has, shaders may take GLOSSY as false.
+  bool gloss() const { return gloss_tables_.capacity() > 0; }
 
  private:
-  Buffer surfaces_, gloss_, constants_;
+  Buffer surfaces_;
+  BufferTexture gloss_tables_, model_numbers_;
 };
 
 }  // namespace sunfleck::gl

@@ -40,7 +40,10 @@ StandData::StandData()
       ground_sky_(RadianceTexture::Read::interpolated, "a ground"),
       triangles_(BufferTexture::Texel::rgba32ui, "the trees' triangles take"),
       light_cells_(BufferTexture::Texel::r32ui, "the lists of trees in the light take"),
-      light_casters_(BufferTexture::Texel::rgba32ui, "the lists of trees in the light take") {}
+      light_casters_(BufferTexture::Texel::rgba32ui, "the lists of trees in the light take"),
+      trees_(BufferTexture::Texel::rgba32ui, "the trees take"),
+      drawn_(BufferTexture::Texel::rgba32ui, "the trees take"),
+      kind_frames_(Buffer::writable(kMostKinds * sizeof(KindFrame))) {}
 
 Sent StandData::update(const DrawnStand& stand) {
   Sent sent;
@@ -53,16 +56,13 @@ Sent StandData::update(const DrawnStand& stand) {
   placeGround(stand);
   sent.trees += sendGrids(stand);
 
-  const bool lit_by_cells = stand.sky || std::ranges::any_of(stand.trees, [](const DrawnTree& tree) {
-                              return !tree.sky_light.values.empty();
-                            });
-  frame_.counts = {static_cast<std::uint32_t>(lights_.size()), static_cast<std::uint32_t>(stand.trees.size()), 0u,
-                   lit_by_cells ? 1u : 0u};
-  frame_.cells = glm::uvec4(glm::uvec3(cells_.blockSize()), static_cast<std::uint32_t>(cells_.blocks().x));
-  frame_.blocks = {static_cast<std::uint32_t>(cells_.blocks().y), 0u, 0u, 0u};
+  lit_by_sky_ = stand.sky ||
+                std::ranges::any_of(stand.trees, [](const DrawnTree& tree) { return !tree.sky_light.values.empty(); });
+  frame_.counts = {static_cast<std::uint32_t>(lights_.size()), 0u, 0u, 0u};
+  frame_.cell_part = glm::vec4(1.f / glm::vec3(cells_.size()), 0.f);
   if (stand.sky) {
-    frame_.blocks.y = static_cast<std::uint32_t>(stand.sky->rows());
-    frame_.blocks.z = static_cast<std::uint32_t>(stand.sky->columns());
+    frame_.counts.y = static_cast<std::uint32_t>(stand.sky->rows());
+    frame_.counts.z = static_cast<std::uint32_t>(stand.sky->columns());
     frame_.sky_azimuth.x = stand.sky->firstAzimuth();
   }
   return sent;
@@ -72,17 +72,19 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
   std::size_t sent = 0;
   tree_kinds_.clear();
   for (const DrawnKind& kind : stand.kinds) tree_kinds_.push_back(kind.tree);
-  if (kinds_.size() != stand.kinds.size()) kinds_.resize(stand.kinds.size());
+  bool changed = kinds_.size() != stand.kinds.size();
+  kinds_.resize(stand.kinds.size());
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const std::shared_ptr<const TreeMesh>& mesh = stand.kinds[i].tree.mesh;
     if (kinds_[i].mesh == mesh) continue;
-    kinds_[i].mesh = mesh;
+    changed = true;
+    kinds_[i].mesh = nullptr;  // until its triangles are sent
     kinds_[i].levels = mesh ? treeLevels(*mesh) : TreeLevels{};
     kinds_[i].buffers.emplace(kinds_[i].levels);
     sent +=
         kinds_[i].levels.vertices.size() * sizeof(glm::vec3) + kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
   }
-  if (sent > 0 || first_triangle_.size() != kinds_.size()) {
+  if (changed) {
     first_triangle_.clear();
     std::size_t count = 0;
     for (const Kind& kind : kinds_) {
@@ -93,6 +95,7 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
     triangles_.resize(2 * count);
     for (std::size_t i = 0; i < kinds_.size(); ++i)
       triangles_.write(2 * first_triangle_[i], std::span<const TriangleData>(kinds_[i].levels.triangles));
+    for (std::size_t i = 0; i < kinds_.size(); ++i) kinds_[i].mesh = stand.kinds[i].tree.mesh;
     sent += count * sizeof(TriangleData);
   }
   std::vector<KindFrame> frames(std::max<std::size_t>(kinds_.size(), 1));
@@ -101,7 +104,7 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
     frames[i] = {.cell_low = glm::vec4(cells.low, 1.f / cells.cell_size),
                  .cell_count = glm::uvec4(glm::uvec3(glm::max(cells.size, glm::ivec3(1))), first_triangle_[i])};
   }
-  kind_frames_.emplace(frames);
+  kind_frames_.write(0, std::as_bytes(std::span(frames)));
   return sent;
 }
 
@@ -131,9 +134,11 @@ std::size_t StandData::updateSky(const DrawnStand& stand) {
 std::size_t StandData::updateTrees(const DrawnStand& stand) {
   std::vector<TreeData> trees;
   for (std::size_t tree = 0; tree < stand.trees.size(); ++tree)
-    trees.push_back({.position = glm::vec4(stand.trees[tree].position, 0.f),
-                     .kind = {stand.trees[tree].kind, cells_.block(tree), 0u, 0u}});
-  std::vector<DrawnData> drawn;
+    trees.push_back({.position = stand.trees[tree].position,
+                     .kind = stand.trees[tree].kind,
+                     .cells = glm::uvec3(cells_.corner(tree)),
+                     .has_cells = cells_.has(tree) ? 1u : 0u});
+  std::vector<Standing> drawn;
   for (Kind& kind : kinds_) kind.drawn.clear();
   box_ = {};
   seen_.clear();
@@ -141,13 +146,14 @@ std::size_t StandData::updateTrees(const DrawnStand& stand) {
     for (std::uint32_t number = 0; number < stand.trees.size(); ++number) {
       const DrawnTree& tree = stand.trees[number];
       seen_.push_back({.tree = number, .kind = tree.kind, .position = tree.position + shift});
-      drawn.push_back({.position = tree.position + shift, .number = static_cast<std::uint32_t>(drawn.size())});
-      kinds_[tree.kind].drawn.push_back(drawn.back());
+      kinds_[tree.kind].drawn.push_back(
+          {.position = tree.position + shift, .number = static_cast<std::uint32_t>(drawn.size())});
+      drawn.push_back({.position = tree.position + shift, .tree = number});
       if (!kinds_[tree.kind].levels.box.empty())
         box_.include(moved(kinds_[tree.kind].levels.box, drawn.back().position));
     }
-  trees_.emplace(trees);
-  drawn_.emplace(drawn);
+  trees_.assign(std::span<const TreeData>(trees));
+  drawn_.assign(std::span<const Standing>(drawn));
   return trees.size() * sizeof trees[0] + drawn.size() * sizeof drawn[0];
 }
 
@@ -187,7 +193,7 @@ std::size_t StandData::sendGrids(const DrawnStand& stand) {
     lit_boxes.push_back({ground_.centre - half, ground_.centre + half});
 
   std::vector<std::uint32_t> first_of_cells;
-  std::vector<CasterData> casters;
+  std::vector<Standing> casters;
   const std::vector<glm::vec3> shifts = copies(stand, stand.periods_around);
   for (std::size_t light = 0; light < lights_.size(); ++light) {
     const Axes axes = axesAlong(lights_[light].along);
@@ -213,14 +219,12 @@ std::size_t StandData::sendGrids(const DrawnStand& stand) {
     }
   }
   light_cells_.assign(std::span<const std::uint32_t>(first_of_cells));
-  light_casters_.assign(std::span<const CasterData>(casters));
+  light_casters_.assign(std::span<const Standing>(casters));
   return first_of_cells.size() * sizeof first_of_cells[0] + casters.size() * sizeof casters[0];
 }
 
 void StandData::bind() const {
-  trees_->bindStorage(0);
-  drawn_->bindStorage(1);
-  kind_frames_->bindStorage(2);
+  kind_frames_.bindUniform(2);
   maps_.bind(0, 1, 3);
   light_cells_.bind(2);
   light_casters_.bind(3);
@@ -228,6 +232,8 @@ void StandData::bind() const {
   triangles_.bind(7);
   sky_.bind(8);
   ground_sky_.bind(9);
+  trees_.bind(12);
+  drawn_.bind(13);
 }
 
 }  // namespace sunfleck::gl

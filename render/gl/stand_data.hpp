@@ -51,6 +51,7 @@ class StandData {
   const std::vector<Kind>& kinds() const { return kinds_; }
   const std::vector<TreeKind>& treeKinds() const { return tree_kinds_; }
   const std::vector<DrawnLight>& lights() const { return lights_; }
+  bool litBySky() const { return lit_by_sky_; }
   // A drawn tree by its number.
   struct Seen {
     std::uint32_t tree = 0, kind = 0;
@@ -77,11 +78,12 @@ class StandData {
   RadianceTexture sky_, ground_sky_;
   std::shared_ptr<const SkyMap> sent_sky_;
   std::uint64_t sent_ground_sky_ = 0;
-  BufferTexture triangles_, light_cells_, light_casters_;
-  std::optional<Buffer> trees_, drawn_, kind_frames_;
+  BufferTexture triangles_, light_cells_, light_casters_, trees_, drawn_;
+  Buffer kind_frames_;
   std::vector<Seen> seen_;
   Bounds box_;
   GroundDisc ground_;
+  bool lit_by_sky_ = false;
   detail::FrameData frame_;
 };
 

@@ -62,7 +62,7 @@ struct StandRenderer::Programs {
   // What a shading program is made for.
   struct Purpose {
     Model model;
-    bool layers, one_kind, one_light;
+    bool layers, one_kind, one_light, gloss, sky;
     auto operator<=>(const Purpose&) const = default;
   };
   std::map<Purpose, Program> shading;
@@ -78,6 +78,8 @@ struct StandRenderer::Programs {
       if (purpose.layers) define(shader, "LAYERS", "1");
       if (purpose.one_kind) define(shader, "ONE_KIND", "1");
       if (purpose.one_light) define(shader, "LIGHTS", "1u");
+      if (!purpose.gloss) define(shader, "GLOSSY", "false");
+      if (!purpose.sky) define(shader, "NO_SKY", "1");
       found = shading.emplace(purpose, Program({shaderOf(Stage::vertex, "render/gl/screen.vert"), shader})).first;
     }
     return found->second;
@@ -131,7 +133,7 @@ void StandRenderer::bindFrame(const View& view, const FrameTarget& target) {
   frame.corner = glm::vec4(corner, 0.f);
   frame.pixel_right = glm::vec4(pixel * axes.right, static_cast<float>(view.low.x) + view.offset.x);
   frame.pixel_up = glm::vec4(pixel * axes.up, static_cast<float>(view.low.y) + view.offset.y);
-  frame.counts.z = view.layer_light;
+  frame.counts.w = view.layer_light;
   frame_.write(0, std::as_bytes(std::span(&frame, 1)));
   frame_.bindUniform(0);
 }
@@ -170,7 +172,7 @@ std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const 
     const glm::vec3 there = look.from + away * look.along;
     const bool seen = data_.frame().ground_albedo.w > 0.f && look.along.z < 0.f &&
                       (away > 0.f || !view.camera.perspective()) &&
-                      (data_.frame().blocks.y > 0u || glm::distance(there, ground.centre) < ground.radius);
+                      (data_.frame().counts.y > 0u || glm::distance(there, ground.centre) < ground.radius);
     return seen ? std::optional<Pick>({.tree = {}, .leaf = {}, .place = there}) : std::nullopt;
   }
   const StandData::Seen seen = data_.seen(id.x);
@@ -187,12 +189,15 @@ FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost 
     target.beginShading(view.accumulate);
     data_.bind();
     glBindTextureUnit(6, target.visible());
-    programs_->buffersOf(view.model, data_).bind();
+    const ShadingBuffers& buffers = programs_->buffersOf(view.model, data_);
+    buffers.bind();
     programs_
         ->shadingFor({.model = view.model,
                       .layers = target.hasLayers(),
                       .one_kind = data_.kinds().size() == 1,
-                      .one_light = data_.lights().size() == 1})
+                      .one_light = data_.lights().size() == 1,
+                      .gloss = buffers.gloss(),
+                      .sky = data_.litBySky()})
         .use();
     glBindVertexArray(programs_->no_array.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <initializer_list>
-#include <stdexcept>
 #include <string>
+
+#include "render/gl/too_large.hpp"
 
 namespace sunfleck::gl {
 namespace {
@@ -21,8 +22,8 @@ unsigned created() {
 VolumeTexture::VolumeTexture(glm::ivec3 size, int channels) : size_(size), channels_(channels), name_(created()) {
   const int longest = std::max({size.x, size.y, size.z});
   if (longest > longestSide())
-    throw std::runtime_error("the trees' cells need a texture of " + std::to_string(longest) +
-                             " texels, and OpenGL allows " + std::to_string(longestSide()));
+    throw TooLarge("the trees' cells need a texture of " + std::to_string(longest) + " texels, and OpenGL allows " +
+                   std::to_string(longestSide()));
   const GLuint name = name_.get();
   glTextureStorage3D(name, 1, channels == 1 ? GL_R32F : GL_RGBA32F, size.x, size.y, size.z);
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);

@@ -11,7 +11,7 @@ namespace sunfleck::gl {
 // centres.
 class VolumeTexture {
  public:
-  // Throws std::runtime_error when a side is longer than OpenGL allows.
+  // Throws TooLarge when a side is longer than OpenGL allows.
   VolumeTexture(glm::ivec3 size, int channels);
   // `values`: channels run fastest, then x, y and z.
   void write(glm::ivec3 corner, glm::ivec3 size, std::span<const float> values);

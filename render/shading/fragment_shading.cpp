@@ -1,7 +1,5 @@
 #include "render/shading/fragment_shading.hpp"
 
-#include <cassert>
-#include <cstring>
 #include <glm/geometric.hpp>
 
 #include "spp/power_table.hpp"
@@ -19,31 +17,27 @@ using spp::select;
 using spp::TablePlace, spp::tablePlace, spp::tableValue;
 using std::abs, std::erfc, std::exp, std::sqrt;
 
-// The text shared with GLSL as members of a class: its functions read `kinds`, `lights` and model_constants.
+// The text shared with GLSL as members of a class: its functions read what it holds.
 class FragmentShading::Text : public spp::StreamFormulas<float> {
  public:
-  explicit Text(const ShadingData& data) : kinds(data.kinds), lights(data.lights), gloss_tables(data.gloss_tables) {}
+  explicit Text(const ShadingData& data)
+      : kinds(data.kinds), lights(data.lights), gloss_tables(data.gloss_tables), model_numbers(data.constants) {}
   virtual ~Text() = default;
   virtual Shaded shadeByLight(Surface, Foliage, float, float, uint) = 0;
   virtual Shaded shadeBySky(Surface, vec3) = 0;
-  virtual void setConstants(std::span<const float>) {}
 
   std::vector<KindOptics> kinds;
   std::vector<ShadingLight> lights;
   std::vector<float> gloss_tables;
+  std::vector<vec4> model_numbers;
+  float glossTableNumber(uint number) const { return gloss_tables[number]; }
+  vec4 modelNumbers(uint number) const { return model_numbers[number]; }
+#define GLOSSY true
 #define SHARED_FN static inline
 #define SHARED_CONSTANT static constexpr
 #include "render/shading/surface.glsl"
 #include "scattering/gloss_formulas.glsl"
 };
-
-#define MODEL_CONSTANTS(Type)                                                                      \
-  void setConstants(std::span<const float> numbers) override {                                     \
-    assert(numbers.size_bytes() % sizeof(Type) == 0);                                              \
-    model_constants.resize(numbers.size_bytes() / sizeof(Type));                                   \
-    std::memcpy(static_cast<void*>(model_constants.data()), numbers.data(), numbers.size_bytes()); \
-  }                                                                                                \
-  std::vector<Type> model_constants
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-parameter"  // not all models read all, and Mesa's GLSL wants names
@@ -88,9 +82,7 @@ struct FragmentShading::Texts {
 #pragma GCC diagnostic pop
 
 FragmentShading::FragmentShading(Model model, const ShadingData& data)
-    : text_(Texts::of(model, data)), lights_(static_cast<uint>(data.lights.size())) {
-  text_->setConstants(data.constants);
-}
+    : text_(Texts::of(model, data)), lights_(static_cast<uint>(data.lights.size())) {}
 FragmentShading::~FragmentShading() = default;
 
 Surface FragmentShading::leafSurface(uint kind, uint tree, uint leaf, const vec3& normal, const vec3& to_eye) const {

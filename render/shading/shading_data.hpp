@@ -29,7 +29,7 @@ struct ShadingData {
   std::vector<KindOptics> kinds;
   std::vector<ShadingLight> lights;
   std::vector<float> gloss_tables;  // of each kind; nothing where none has a gloss
-  std::vector<float> constants;     // the model's own (shading_model.hpp)
+  std::vector<vec4> constants;      // the model's own (shading_model.hpp)
 };
 
 // Brings the data up to date; what depends on leaves and model alone stays while these do.

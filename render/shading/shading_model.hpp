@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <glm/vec4.hpp>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -15,9 +16,9 @@ namespace sunfleck::shading {
 struct ShadingModel {
   Model model;
   std::string_view text;  // file that defines scatteredLight()
-  // What the text reads as model_constants, for all kinds: one number after the other, as its struct holds them.
-  // Throws std::invalid_argument without `exact` where it is needed.
-  std::vector<float> (*constants)(std::span<const TreeKind> kinds, const spp::PowerTableOf& exact);
+  // What the text reads by modelNumbers(), for all kinds. Throws std::invalid_argument without `exact` where it is
+  // needed.
+  std::vector<glm::vec4> (*constants)(std::span<const TreeKind> kinds, const spp::PowerTableOf& exact);
 };
 
 const ShadingModel& shadingModel(Model model);

@@ -1,7 +1,7 @@
 // What all models are made of. This text, a model's and shade.glsl are C++ (the members of a class) and GLSL, in this
-// order. Both give them `kinds` and `lights`, arrays of KindOptics and ShadingLight, `gloss_tables` (R26) of each kind, and
-// the formulas of spp and of the gloss; C++ defines Foliage, what stands before and beyond a place in a light, as
-// foliage.glsl does.
+// order. Both give them `kinds` and `lights`, arrays of KindOptics and ShadingLight; glossTableNumber() of the gloss_tables
+// (R26), modelNumbers(), four at a time, of the model's own; GLOSSY, false where no leaf has a gloss; and the formulas of
+// spp and of the gloss. C++ defines Foliage, what stands before and beyond a place in a light, as foliage.glsl does.
 
 Surface leafSurface(uint kind, uint tree, uint leaf, vec3 normal, vec3 to_eye) {
   Surface surface;
@@ -9,7 +9,7 @@ Surface leafSurface(uint kind, uint tree, uint leaf, vec3 normal, vec3 to_eye) {
   surface.to_eye = to_eye;
   surface.reflectance = vec3(kinds[kind].leaf_reflectance);
   surface.transmittance = vec3(kinds[kind].leaf_transmittance);
-  surface.roughness = kinds[kind].leaf_gloss.w;
+  surface.roughness = GLOSSY ? kinds[kind].leaf_gloss.w : 0.0f;
   surface.kind = kind;
   surface.tree = tree;
   surface.leaf = leaf;
@@ -58,7 +58,7 @@ struct Gloss {
   float albedo;    // E of it
 };
 float glossNumber(uint kind, int number) {
-  return gloss_tables[kind * uint(kGlossNumbers) + uint(number)];
+  return glossTableNumber(kind * uint(kGlossNumbers) + uint(number));
 }
 float glossAlbedo(uint kind, float cosine) {
   GlossPlace place = glossAlbedoPlace(cosine);

@@ -18,19 +18,27 @@ struct FrameData {
   glm::mat4 clip_from_world{1.f};
   glm::vec4 eye{0.f}, sight{0.f}, corner{0.f}, pixel_right{0.f}, pixel_up{0.f};
   glm::vec4 ground{0.f}, ground_albedo{0.f}, period{0.f}, sky_azimuth{0.f}, ground_cells{0.f}, ground_open{0.f};
-  glm::uvec4 counts{0u}, cells{1u}, blocks{0u};
+  glm::vec4 cell_part{1.f};
+  glm::uvec4 counts{0u};
   std::array<LightFrame, 4> lights{};
 };
-static_assert(sizeof(FrameData) == 64 + 14 * 16 + 4 * 64);
+static_assert(sizeof(FrameData) == 64 + 13 * 16 + 4 * 64);
 
 struct TreeData {
-  glm::vec4 position{0.f};
-  glm::uvec4 kind{0u};
+  glm::vec3 position{0.f};
+  std::uint32_t kind = 0;
+  glm::uvec3 cells{0u};
+  std::uint32_t has_cells = 0;
 };
 
 struct DrawnData {
   glm::vec3 position{0.f};
   std::uint32_t number = 0;
+};
+
+struct Standing {
+  glm::vec3 position{0.f};
+  std::uint32_t tree = 0;
 };
 
 struct KindFrame {
@@ -46,11 +54,6 @@ struct MapFrame {
 struct MapLine {
   std::uint32_t first, end;
   float wood_depth;
-};
-
-struct CasterData {
-  glm::vec3 position;
-  std::uint32_t tree;
 };
 
 inline constexpr std::uint32_t kNone = ~0u, kGround = ~0u - 1;
