@@ -8,6 +8,7 @@
 
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
+#include "field/cell_piece.hpp"
 #include "field/elements.hpp"
 #include "field/sweep.hpp"
 
@@ -33,12 +34,7 @@ struct CellRule {
 struct CellMedium {
   SweepGrid grid;
 
-  // What of an element lies in a cell.
-  struct Piece {
-    std::uint32_t element;
-    float area;  // that is seen from either side [m^2]: of wood, whose other side is within, half of its surface
-  };
-  std::vector<Piece> pieces;                // cell after cell, in the order of elements
+  std::vector<CellPiece> pieces;               // cell after cell, in the order of elements
   std::vector<std::uint32_t> first_piece;   // of each slot, and the end
   std::vector<std::uint32_t> of_element;    // numbers of pieces, element after element
   std::vector<std::uint32_t> first_of;      // of each element in of_element, and the end

@@ -6,10 +6,9 @@ namespace {
 
 using detail::ExchangeElements;
 using detail::ExchangeRows;
-using Piece = CellMedium::Piece;
+using Piece = CellPiece;
 
 constexpr std::size_t kLanes = 8;
-constexpr std::size_t kMostBands = 4;
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 
 [[gnu::always_inline]] inline Floats load(const float* from) {
@@ -93,7 +92,7 @@ void receiveBands(const ExchangeRows& rows, const ExchangeElements& elements, co
 
 void send(const ExchangeRows& rows, const ExchangeElements& elements, const Piece* begin, const Piece* end,
           float per_volume, const float* radiance, std::size_t bands, float* source) {
-  static_assert(kMostBands == 4);
+  static_assert(detail::kMostFieldBands == 4);
   if (bands == 1) return sendBands<1>(rows, elements, begin, end, per_volume, radiance, source);
   if (bands == 2) return sendBands<2>(rows, elements, begin, end, per_volume, radiance, source);
   if (bands == 3) return sendBands<3>(rows, elements, begin, end, per_volume, radiance, source);
