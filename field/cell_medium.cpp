@@ -17,9 +17,7 @@ constexpr double kMostCells = 2e9;
 
 struct Turned {
   float cosine, sine;
-  glm::vec3 operator()(const glm::vec3& v) const {
-    return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z};
-  }
+  glm::vec3 operator()(const glm::vec3& v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z}; }
 };
 
 Turned turnOf(const Placement& placement) {
@@ -39,7 +37,8 @@ void placeCells(SweepGrid& grid, std::span<const PlacedElements> trees, const Ce
     const Turned turn = turnOf(tree.placement);
     Bounds box;
     for (const glm::uvec3& t : tree.mesh->leaf_triangles)
-      for (int corner = 0; corner < 3; ++corner) box.include(turn(tree.mesh->vertices[t[corner]]) + tree.placement.position);
+      for (int corner = 0; corner < 3; ++corner)
+        box.include(turn(tree.mesh->vertices[t[corner]]) + tree.placement.position);
     const glm::vec3 size = leafBounds(*tree.mesh).size();
     side = std::min(side, std::max({size.x, size.y, size.z, 1e-6f}) / static_cast<float>(rule.cells));
     all.include(box);

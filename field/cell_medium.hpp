@@ -34,14 +34,14 @@ struct CellRule {
 struct CellMedium {
   SweepGrid grid;
 
-  std::vector<CellPiece> pieces;               // cell after cell, in the order of elements
-  std::vector<std::uint32_t> first_piece;   // of each slot, and the end
-  std::vector<std::uint32_t> of_element;    // numbers of pieces, element after element
-  std::vector<std::uint32_t> first_of;      // of each element in of_element, and the end
-  std::vector<glm::vec3> normal;            // of each element, of its front
-  std::vector<float> area;                  // of each element, as in its pieces [m^2]
-  std::vector<std::uint32_t> material;      // of each element: twice the kind of its tree; one more for wood
-  std::vector<std::uint32_t> first_element; // of each tree, and the end
+  std::vector<CellPiece> pieces;             // cell after cell, in the order of elements
+  std::vector<std::uint32_t> first_piece;    // of each slot, and the end
+  std::vector<std::uint32_t> of_element;     // numbers of pieces, element after element
+  std::vector<std::uint32_t> first_of;       // of each element in of_element, and the end
+  std::vector<glm::vec3> normal;             // of each element, of its front
+  std::vector<float> area;                   // of each element, as in its pieces [m^2]
+  std::vector<std::uint32_t> material;       // of each element: twice the kind of its tree; one more for wood
+  std::vector<std::uint32_t> first_element;  // of each tree, and the end
 };
 
 //   period  of the trees, where they repeat

@@ -13,8 +13,10 @@
 namespace sunfleck {
 namespace {
 
-struct Gaps {
-  double hits = 0., expected = 0.;
+// A part of a line through the tree.
+struct Stretch {
+  float depth = 0.f;  // leaves that it would meet if they stood at random in each cell, in the mean
+  bool met = false;   // whether it meets any
 };
 
 // Crossings per metre in each slot along an axis.
@@ -32,15 +34,15 @@ std::vector<float> extinctionAlong(const CellMedium& medium, const Direction& ax
   return sigma;
 }
 
-// Follows the line of a pixel through the cells.
-Gaps gapsOnLine(const DeepOpacityMap& map, int x, int y, const SweepGrid& grid, std::span<const float> sigma) {
-  Gaps gaps;
+// Follows the line of a pixel through the cells and cuts it into stretches.
+void stretchesOf(const DeepOpacityMap& map, int x, int y, const SweepGrid& grid, std::span<const float> sigma,
+                 float most_depth, std::vector<Stretch>& stretches) {
   const glm::vec3 start = map.inSpace(x, y, 0.f), along = map.along();
   const glm::vec3 high = grid.low + grid.side * glm::vec3(grid.size);
   float at = -std::numeric_limits<float>::infinity(), end = std::numeric_limits<float>::infinity();
   for (int a = 0; a < 3; ++a) {
     if (std::abs(along[a]) < 1e-6f) {
-      if (start[a] < grid.low[a] || start[a] > high[a]) return gaps;
+      if (start[a] < grid.low[a] || start[a] > high[a]) return;
       continue;
     }
     const float one = (grid.low[a] - start[a]) / along[a], other = (high[a] - start[a]) / along[a];
@@ -49,6 +51,7 @@ Gaps gapsOnLine(const DeepOpacityMap& map, int x, int y, const SweepGrid& grid, 
   }
   const std::span<const Crossing> crossings = map.crossings(x, y);
   auto next = crossings.begin();
+  Stretch stretch;
   while (at < end) {
     // The cell a little farther on, so that a start on a face is in the cell behind it.
     const float step = 1e-4f * grid.side.x;
@@ -62,15 +65,15 @@ Gaps gapsOnLine(const DeepOpacityMap& map, int x, int y, const SweepGrid& grid, 
     }
     const std::uint32_t slot =
         grid.slot[static_cast<std::size_t>((cell.z * grid.size.y + cell.y) * grid.size.x + cell.x)];
-    while (next != crossings.end() && next->depth < at) ++next;
-    const bool hit = next != crossings.end() && next->depth < leave;
-    if (slot != SweepGrid::kEmpty) {
-      gaps.hits += hit;
-      gaps.expected += double{sigma[slot]} * double{(hit ? next->depth : leave) - at};
+    if (slot != SweepGrid::kEmpty) stretch.depth += sigma[slot] * (leave - at);
+    for (; next != crossings.end() && next->depth < leave; ++next) stretch.met = true;
+    if (stretch.depth >= most_depth) {
+      stretches.push_back(stretch);
+      stretch = {};
     }
     at = leave;
   }
-  return gaps;
+  if (stretch.depth > 0.f) stretches.push_back(stretch);
 }
 
 }  // namespace
@@ -80,24 +83,34 @@ float clumping(const TreeMesh& mesh, const CellMedium& medium, const ClumpingEff
   require(effort.axes >= 1 && effort.axes <= 128, "axes of clumping", effort.axes, "1 to 128");
   require(effort.resolution >= 1 && effort.resolution <= 4096, "resolution of clumping", effort.resolution,
           "1 to 4096");
-  Gaps all;
+  require(effort.depth > 0.f, "depth of clumping", effort.depth, "above 0");
+  std::vector<Stretch> stretches;
   for (const Direction& axis : spreadAxes(effort.axes)) {
     const DeepOpacityMap map(mesh, axis, effort.resolution, DeepOpacityMap::Wood::none);
     const std::vector<float> sigma = extinctionAlong(medium, axis);
-    std::vector<Gaps> rows(static_cast<std::size_t>(map.size().y));
+    std::vector<std::vector<Stretch>> rows(static_cast<std::size_t>(map.size().y));
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
-      for (int x = 0; x < map.size().x; ++x) {
-        const Gaps gaps = gapsOnLine(map, x, static_cast<int>(y), medium.grid, sigma);
-        rows[y].hits += gaps.hits;
-        rows[y].expected += gaps.expected;
-      }
+      for (int x = 0; x < map.size().x; ++x)
+        stretchesOf(map, x, static_cast<int>(y), medium.grid, sigma, effort.depth, rows[y]);
     });
-    for (const Gaps& gaps : rows) {
-      all.hits += gaps.hits;
-      all.expected += gaps.expected;
-    }
+    for (const auto& row : rows) stretches.insert(stretches.end(), row.begin(), row.end());
   }
-  return all.expected > 0. ? static_cast<float>(std::clamp(all.hits / all.expected, 0.01, 1.)) : 1.f;
+  // Newton's steps from where leaves are as they seem: the sum is concave in Omega, so that they only go on.
+  double met = 0.;
+  for (const Stretch& stretch : stretches) met += stretch.met;
+  double omega = 0.;
+  constexpr int steps = 6;  // each doubles the digits; from 0 the first is met / sum tau
+  for (int step = 0; step < steps; ++step) {
+    double expected = 0., slope = 0.;
+    for (const Stretch& stretch : stretches) {
+      const double passing = std::exp(-omega * double{stretch.depth});
+      expected += 1. - passing;
+      slope += double{stretch.depth} * passing;
+    }
+    if (!(slope > 0.)) break;
+    omega = std::min(omega + (met - expected) / slope, 1.);
+  }
+  return static_cast<float>(std::clamp(omega, 0.01, 1.));
 }
 
 }  // namespace sunfleck

@@ -8,16 +8,18 @@
 
 namespace sunfleck {
 
-// How closely clumping is measured: parallel lines along a few axes.
+// How clumping is measured: along parallel lines.
 struct ClumpingEffort {
   int axes = 6;
   int resolution = 96;  // lines along the longer side of the tree
+  float depth = 6.f;    // of the stretches that lines are cut into: leaves met on them, in the mean [1]
 };
 
-// (F19) Omega of a tree: how many leaves lines meet in the cells of a medium, by how many they would meet if the leaves
-// of a cell stood at random in it. Only the way to the first leaf in each cell counts, so that leaves behind one another
-// count as one: the estimate of greatest likelihood for gaps. At most 1: what is above comes of leaves too large for
-// the cells, not of order.
+// (F19) Omega of a tree: by what factor its leaves must seem fewer than they are for a medium in cells to let through
+// as much light as the tree does. Lines are cut into stretches of a few leaves' depth and it is counted how many of
+// them meet a leaf at all; were leaves at random in each cell, all stretches of depth tau together would be met sum (1
+// - e^(-Omega tau)) times. Stretches longer than a cell see what is lost between cells as well: leaves stand beside
+// leaves, and the cells at the crown's rim are half empty. At most 1.
 //   medium  of this tree alone, which does not repeat
 float clumping(const TreeMesh& mesh, const CellMedium& medium, const ClumpingEffort& effort = {});
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/available_memory.hpp"
@@ -42,9 +43,50 @@ void forEach(std::size_t count, std::size_t grain, const Work& work) {
   });
 }
 
-float albedo(const FieldOptics& optics, bool wood) {
+float albedo(const GridOptics& optics, bool wood) {
   return wood ? optics.wood_reflectance : optics.leaf.albedo();
 }
+
+// (F17) How far irradiances may be from their fixed point, by how far the last step has changed them: the sum of
+// changes falls from step to step by the share of the light that stays, which is no larger than the largest albedo, and
+// smaller where light can leave.
+class ErrorBound {
+ public:
+  ErrorBound(std::span<const float> weights, std::size_t sides, double albedo)
+      : weights_(weights), sides_(sides), albedo_(albedo) {}
+
+  //   x, g         irradiances, and what is at walls, before and after a step
+  //   wall_change  of power at the walls
+  // Returns the bound on the sum of errors of irradiance times area, by their sum.
+  double operator()(const std::vector<float>& x, const std::vector<float>& g, double wall_change) {
+    double change = 0., total = 0., moved = 0., kept = 0.;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double weight = weights_[i];
+      if (i < sides_) {
+        change += weight * std::abs(double{g[i]} - double{x[i]});
+        total += weight * double{g[i]};
+      }
+      if (!last_x_.empty()) {
+        moved += weight * std::abs(double{x[i]} - double{last_x_[i]});
+        kept += weight * std::abs(double{g[i]} - double{last_g_[i]});
+      }
+    }
+    // Steps are mostly along what is slowest to leave, but not wholly: half of the share that leaves is trusted.
+    if (moved > 0.) staying_ = std::max(staying_, kept / moved);
+    const double stays = last_x_.empty() ? albedo_ : std::min(albedo_, 0.5 * (1. + staying_));
+    last_x_ = x;
+    last_g_ = g;
+    if (!(total > 0.)) return 0.;
+    return stays < 1. ? (stays * change + wall_change) / ((1. - stays) * total)
+                      : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  std::span<const float> weights_;
+  std::size_t sides_;
+  double albedo_, staying_ = 0.;
+  std::vector<float> last_x_, last_g_;
+};
 
 }  // namespace
 
@@ -52,11 +94,11 @@ float albedo(const FieldOptics& optics, bool wood) {
 struct GridField::State {
   UpperHalf half;
   Sweep sweep;
-  std::vector<float> direct;                 // as the elements' areas count: of wood on either side
-  std::vector<float> irradiance;             // of each element, side and band
-  std::vector<float> radiance;               // that elements send, likewise
-  std::vector<float> source, mean;           // in cells
-  std::vector<float> of_pieces;              // irradiance of each piece, side and band
+  std::vector<float> direct;        // as the elements' areas count: of wood on either side
+  std::vector<float> irradiance;    // of each element, side and band
+  std::vector<float> radiance;      // that elements send, likewise
+  std::vector<float> source, mean;  // in cells
+  std::vector<float> of_pieces;     // irradiance of each piece, side and band
 };
 
 GridField::GridField(CellMedium medium, std::span<const float> clumping, const SphereOrdinates& ordinates)
@@ -68,8 +110,9 @@ GridField::GridField(CellMedium medium, std::span<const float> clumping, const S
   forEach(elements, 256, [&](std::size_t i) {
     float sum = 0.f;
     for (std::size_t k = 0; k < half.x.size(); ++k)
-      sum += 2.f * half.weight[k] * std::abs(half.x[k] * medium_.normal[i].x + half.y[k] * medium_.normal[i].y +
-                                             half.z[k] * medium_.normal[i].z);
+      sum +=
+          2.f * half.weight[k] *
+          std::abs(half.x[k] * medium_.normal[i].x + half.y[k] * medium_.normal[i].y + half.z[k] * medium_.normal[i].z);
     fullness_[i] = 2.f * kPi / sum;
   });
   clumping_.resize(slots);
@@ -101,10 +144,9 @@ double GridField::memoryBytes(std::size_t bands) const {
   const auto elements = static_cast<double>(medium_.area.size()), pieces = static_cast<double>(medium_.pieces.size()),
              sets = static_cast<double>(bands);
   const double state = 2. * elements * sets;  // of every value the acceleration keeps
-  const double walls = medium_.grid.periodic
-                           ? static_cast<double>(ordinates_.size()) * sets * medium_.grid.size.z *
-                                 (medium_.grid.size.x + medium_.grid.size.y)
-                           : 0.;
+  const double walls = medium_.grid.periodic ? static_cast<double>(ordinates_.size()) * sets * medium_.grid.size.z *
+                                                   (medium_.grid.size.x + medium_.grid.size.y)
+                                             : 0.;
   return Sweep::memoryBytes(medium_.grid, ordinates_, bands) + 48. * elements + 12. * pieces +
          4. * (2. * pieces * sets + 3. * state + (2. * kKept + 5.) * (state + walls));
 }
@@ -121,7 +163,7 @@ EnteringLight GridField::evenSky(std::span<const float> sky, std::span<const flo
   return entering;
 }
 
-void GridField::validate(const FieldLight& light) const {
+void GridField::validate(const GridLight& light) const {
   const std::size_t bands = light.bands(), elements = medium_.area.size();
   require(bands >= 1 && bands <= kMostBands, "bands of the field", bands, "1 to 4");
   const auto share = [](const char* what, float value) {
@@ -131,7 +173,7 @@ void GridField::validate(const FieldLight& light) const {
   for (const std::uint32_t material : medium_.material) kinds = std::max(kinds, material / 2 + 1);
   for (const auto& of_kinds : light.optics) {
     require(of_kinds.size() >= kinds, "optics of kinds of trees", of_kinds.size(), "one for each kind");
-    for (const FieldOptics& optics : of_kinds) {
+    for (const GridOptics& optics : of_kinds) {
       sunfleck::validate(optics.leaf);
       share("wood reflectance", optics.wood_reflectance);
     }
@@ -152,13 +194,14 @@ void GridField::validate(const FieldLight& light) const {
          static_cast<std::size_t>(medium_.grid.size.x) * static_cast<std::size_t>(medium_.grid.size.y) * bands);
   const double bytes = memoryBytes(bands), room = availableMemory();
   if (bytes > room)
-    throw InvalidInput(fmt::format("the field needs {:.1f} GB of memory and there are {:.1f}: must be fewer trees or "
-                                   "larger cells",
-                                   1e-9 * bytes, 1e-9 * room));
+    throw InvalidInput(
+        fmt::format("the field needs {:.1f} GB of memory and there are {:.1f}: must be fewer trees or "
+                    "larger cells",
+                    1e-9 * bytes, 1e-9 * room));
 }
 
 // (F17) What elements receive when they send what they sent of state.irradiance: replaces it.
-void GridField::step(State& state, const FieldLight& light) {
+void GridField::step(State& state, const GridLight& light) {
   const std::size_t bands = light.bands(), slots = medium_.grid.cells.size(), pairs = ordinates_.rows() / 2,
                     stride = bands * kLanes;
   const detail::ExchangeRows rows = state.half.rows();
@@ -167,7 +210,7 @@ void GridField::step(State& state, const FieldLight& light) {
   forEach(medium_.area.size(), 1024, [&](std::size_t i) {
     const std::uint32_t material = medium_.material[i];
     for (std::size_t band = 0; band < bands; ++band) {
-      const FieldOptics& optics = light.optics[band][material / 2];
+      const GridOptics& optics = light.optics[band][material / 2];
       const bool wood = material % 2 == 1;
       const float same = (wood ? optics.wood_reflectance : optics.leaf.reflectance) / kPi,
                   other = wood ? 0.f : optics.leaf.transmittance / kPi;
@@ -228,7 +271,7 @@ void GridField::step(State& state, const FieldLight& light) {
 }
 
 // (F17)
-FieldSolution GridField::solve(const FieldLight& light, const FieldEffort& effort) {
+GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) {
   validate(light);
   const std::size_t bands = light.bands(), elements = medium_.area.size(), sides = 2 * elements;
   Sweep sweep(medium_.grid, ordinates_, bands);
@@ -273,33 +316,26 @@ FieldSolution GridField::solve(const FieldLight& light, const FieldEffort& effor
       faces[(i / kLanes * bands + band) * kLanes + i % kLanes] = values[sides + i];
   };
 
-  FieldSolution solution;
-  std::vector<double> before(bands, 0.);
-  std::vector<double> contraction(bands, 0.);
+  std::vector<ErrorBound> bounds;
+  for (const auto& of_kinds : light.optics) {
+    double most = 0.;
+    for (const GridOptics& optics : of_kinds)
+      most = std::max({most, double{albedo(optics, false)}, double{albedo(optics, true)}});
+    bounds.emplace_back(weights, sides, most);
+  }
+  GridSolution solution;
   for (;;) {
-    std::vector<std::vector<float>> values;
+    std::vector<std::vector<float>> values, found;
     for (std::size_t band = 0; band < bands; ++band) values.push_back(gather(band));
     step(state, light);
     ++solution.iterations;
     solution.error_bound = 0.;
     bool steady = true;
     for (std::size_t band = 0; band < bands; ++band) {
-      const std::vector<float> found = gather(band);
-      double change = 0., total = 0.;
-      for (std::size_t i = 0; i < sides; ++i) {
-        change += double{medium_.area[i / 2]} * std::abs(double{found[i]} - double{values[band][i]});
-        total += double{medium_.area[i / 2]} * double{found[i]};
-      }
-      const double wall_change = state.sweep.wallChange(band);
-      double most = 0.;
-      for (const FieldOptics& optics : light.optics[band])
-        most = std::max({most, double{albedo(optics, false)}, double{albedo(optics, true)}});
-      const double bound = total > 0. ? (most * change + wall_change) / ((1. - most) * total) : 0.;
+      found.push_back(gather(band));
+      const double bound = bounds[band](values[band], found[band], state.sweep.wallChange(band));
       steady = steady && bound <= double{effort.error};
       solution.error_bound = std::max(solution.error_bound, bound);
-      if (getenv("FIELD_TRACE"))
-        fmt::print("  it {} band {} change {:.2e} wall {:.2e} bound {:.2e}\n", solution.iterations, band,
-                   change / total, wall_change / total, bound);
     }
     if (steady) break;
     if (solution.iterations >= effort.iterations) {
@@ -308,8 +344,7 @@ FieldSolution GridField::solve(const FieldLight& light, const FieldEffort& effor
       break;
     }
     for (std::size_t band = 0; band < bands; ++band) {
-      const std::vector<float> found = gather(band);
-      mixers[band].next(values[band], found);
+      mixers[band].next(values[band], found[band]);
       scatter(band, values[band]);
     }
   }
@@ -320,7 +355,7 @@ FieldSolution GridField::solve(const FieldLight& light, const FieldEffort& effor
   const double column = double{medium_.grid.side.x} * double{medium_.grid.side.y};
   solution.ground_irradiance.assign(state.sweep.groundIrradiance().begin(), state.sweep.groundIrradiance().end());
   for (std::size_t band = 0; band < bands; ++band) {
-    FieldBalance balance;
+    GridBalance balance;
     double direct = 0., leaves = 0., wood = 0., on_ground = 0., ground = 0.;
     for (std::size_t i = 0; i < sides; ++i) {
       const std::uint32_t material = medium_.material[i / 2];
@@ -350,7 +385,8 @@ FieldSolution GridField::solve(const FieldLight& light, const FieldEffort& effor
   for (std::size_t i = 0; i < elements; ++i)
     if (medium_.material[i] % 2 == 1)
       for (std::size_t band = 0; band < bands; ++band) {
-        float &front = solution.irradiance[i * 2 * bands + band], &back = solution.irradiance[i * 2 * bands + bands + band];
+        float &front = solution.irradiance[i * 2 * bands + band],
+              &back = solution.irradiance[i * 2 * bands + bands + band];
         front = 0.5f * (front + back);
         back = 0.f;
       }

@@ -13,29 +13,29 @@
 namespace sunfleck {
 
 // What the trees of a kind do to light of one band.
-struct FieldOptics {
+struct GridOptics {
   LeafOptics leaf{};
   float wood_reflectance = 0.3f;  // Lambertian [1], 0 .. 1
 };
 
 // Light that comes to a field, in all bands at once. Figures of elements stand at (element * 2 + side) * bands + band;
 // side 0 is the front.
-struct FieldLight {
-  std::vector<std::vector<FieldOptics>> optics;  // of each band and kind
+struct GridLight {
+  std::vector<std::vector<GridOptics>> optics;  // of each band and kind
   // Irradiance that comes straight from the sun, of each element, side and band; of wood on its whole surface.
   std::vector<float> direct;
   EnteringLight entering;  // what comes from the sky and the ground
   std::size_t bands() const { return optics.size(); }
 };
 
-struct FieldEffort {
+struct GridEffort {
   // Bound on the sum of absolute errors of all elements' irradiances, weighted by area, by their sum [1].
   float error = 0.005f;
   int iterations = 100;  // at most
 };
 
 // Where the light of one band ends up, as a share of what comes [1].
-struct FieldBalance {
+struct GridBalance {
   double incoming = 0.;  // power that comes, in the unit of irradiance times m^2; nothing else is in it
   double absorbed_leaves = 0., absorbed_wood = 0., absorbed_ground = 0.;
   double arriving_ground = 0.;
@@ -44,12 +44,12 @@ struct FieldBalance {
   double residual() const { return 1. - absorbed_leaves - absorbed_wood - absorbed_ground - upward - elsewhere; }
 };
 
-struct FieldSolution {
-  std::vector<float> irradiance;  // of each element, side and band, direct light included; of wood all is in front
-  std::vector<FieldBalance> balance;  // of each band
+struct GridSolution {
+  std::vector<float> irradiance;     // of each element, side and band, direct light included; of wood all is in front
+  std::vector<GridBalance> balance;  // of each band
   std::vector<float> ground_irradiance;  // of each column of cells and band
   int iterations = 0;                    // times that light was followed through the grid
-  double error_bound = 0.;               // see FieldEffort::error; larger than asked for only if `told`
+  double error_bound = 0.;               // see GridEffort::error; larger than asked for only if `told`
   std::string told;                      // why there is no steady state, or none was found
 };
 
@@ -71,7 +71,7 @@ class GridField {
 
   // Throws InvalidInput on no band or more than kMostBands, a share out of its range, light that is not finite or
   // negative, arrays that do not fit the medium, and on more memory than there is.
-  FieldSolution solve(const FieldLight& light, const FieldEffort& effort = {});
+  GridSolution solve(const GridLight& light, const GridEffort& effort = {});
 
   // Light of even radiance from everywhere above, for each band [radiance]; beyond the sides of a single stand the
   // ground sends up `ground` [radiance].
@@ -83,8 +83,8 @@ class GridField {
 
  private:
   struct State;
-  void validate(const FieldLight& light) const;
-  void step(State& state, const FieldLight& light);
+  void validate(const GridLight& light) const;
+  void step(State& state, const GridLight& light);
 
   CellMedium medium_;
   SphereOrdinates ordinates_;

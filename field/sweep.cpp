@@ -59,8 +59,8 @@ void Sweep::enter(std::size_t row, const EnteringLight& entering) {
   // What the ground sends up, normalised by the flux of these very directions, so that none is lost or made.
   for (std::size_t column = 0; column < area(grid_.size.y, grid_.size.x); ++column)
     for (std::size_t band = 0; band < bands_; ++band) {
-      const float up = entering.ground_albedo[band] * ground_[column * bands_ + band] /
-                       static_cast<float>(ordinates_.halfFlux(2));
+      const float up =
+          entering.ground_albedo[band] * ground_[column * bands_ + band] / static_cast<float>(ordinates_.halfFlux(2));
       std::fill_n(level + (column * bands_ + band) * kLanes, kLanes, up);
     }
 }
@@ -170,8 +170,7 @@ Sweep::Powers Sweep::leaving(std::size_t band) const {
   Powers powers;
   for (std::size_t row = 0; row < ordinates_.rows(); ++row) {
     (ordinates_.direction(row * kLanes).z < 0.f ? powers.bottom : powers.top) += throughLevel(row, band);
-    if (!grid_.periodic)
-      powers.sides += throughSides(row, band, [&](std::size_t at) { return double{walls_[at]}; });
+    if (!grid_.periodic) powers.sides += throughSides(row, band, [&](std::size_t at) { return double{walls_[at]}; });
   }
   return powers;
 }
@@ -196,7 +195,8 @@ double Sweep::wallChange(std::size_t band) const {
   if (!grid_.periodic) return 0.;
   double change = 0.;
   for (std::size_t row = 0; row < ordinates_.rows(); ++row)
-    change += throughSides(row, band, [&](std::size_t at) { return std::abs(double{walls_[at]} - double{before_[at]}); });
+    change +=
+        throughSides(row, band, [&](std::size_t at) { return std::abs(double{walls_[at]} - double{before_[at]}); });
   return change;
 }
 

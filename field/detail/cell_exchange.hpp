@@ -31,8 +31,8 @@ struct CellExchange {
                      const CellPiece* end, float per_volume, float* sigma);
   // Q of a cell [radiance/m] from what elements send out: radiosity over pi, of front and of back, at
   // (element * 2 + side) * bands + band.
-  void (*send)(const ExchangeRows& rows, const ExchangeElements& elements, const CellPiece* begin,
-               const CellPiece* end, float per_volume, const float* radiance, std::size_t bands, float* source);
+  void (*send)(const ExchangeRows& rows, const ExchangeElements& elements, const CellPiece* begin, const CellPiece* end,
+               float per_volume, const float* radiance, std::size_t bands, float* source);
   // What the pieces of a cell receive from radiance: irradiance of front and back, at
   // ((piece - begin) * 2 + side) * bands + band.
   void (*receive)(const ExchangeRows& rows, const ExchangeElements& elements, const CellPiece* begin,

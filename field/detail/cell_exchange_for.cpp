@@ -48,8 +48,8 @@ void sendBands(const ExchangeRows& rows, const ExchangeElements& elements, const
     Floats up[kBands], down[kBands];
     for (std::size_t band = 0; band < kBands; ++band) up[band] = down[band] = Floats{};
     for (const Piece* piece = begin; piece != end; ++piece) {
-      const Floats d = cosine(rows, row, elements.normal[piece->element]) *
-                       (piece->area * elements.fullness[piece->element]);
+      const Floats d =
+          cosine(rows, row, elements.normal[piece->element]) * (piece->area * elements.fullness[piece->element]);
       const Floats towards = positive(d), away = positive(-d);
       const float* const front = radiance + std::size_t{piece->element} * 2 * kBands;
       const float* const back = front + kBands;

@@ -14,14 +14,14 @@ inline constexpr std::size_t kSweepLanes = 8;
 // Every figure of a cell or a face stands for kSweepLanes directions of one octant, side by side, and where there are
 // bands for one band after the other.
 struct SweptRow {
-  glm::ivec3 size;                // [cell]
-  bool backward[3];               // whether the octant travels down the axis
-  float rate[3][kSweepLanes];     // 2 |mu| / side of a cell [1/m]
-  const std::uint32_t* slot;      // of each cell, or none
-  std::uint32_t none;             // slot of a cell that holds nothing
-  const float* extinction;        // of each slot [1/m]
-  const float* source;            // of each slot and band [1/m per the unit of radiance]
-  float* mean;                    // to be written: mean radiance in the cell, of each slot and band
+  glm::ivec3 size;                  // [cell]
+  bool backward[3];                 // whether the octant travels down the axis
+  float rate[3][kSweepLanes];       // 2 |mu| / side of a cell [1/m]
+  const std::uint32_t* slot;        // of each cell, or none
+  std::uint32_t none;               // slot of a cell that holds nothing
+  const float* extinction;          // of each slot [1/m]
+  const float* source;              // of each slot and band [1/m per the unit of radiance]
+  float* mean;                      // to be written: mean radiance in the cell, of each slot and band
   float *face_x, *face_y, *face_z;  // radiance on faces: of (z, y), (z, x), (y, x), and band; in what enters, out what
                                     // leaves
   std::size_t bands;

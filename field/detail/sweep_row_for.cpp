@@ -27,7 +27,8 @@ struct Faces {
 };
 
 // (F14) What a cell sends out where its diamond would send less than nothing through a face: nothing through that face,
-// and the mean anew from the balance that is left, so that no light is made. At most three times, for one face more each.
+// and the mean anew from the balance that is left, so that no light is made. At most three times, for one face more
+// each.
 [[gnu::noinline]] Floats fixedUp(const Floats rate[3], Floats extinction, Floats source, const Faces& in, Faces& out) {
   Integers closed_x{}, closed_y{}, closed_z{};
   Floats mean{};
@@ -38,8 +39,8 @@ struct Faces {
     const Floats none{};
     const Floats open_x = closed_x ? none : rate[0], open_y = closed_y ? none : rate[1],
                  open_z = closed_z ? none : rate[2];
-    const Floats gained = source + 0.5f * ((rate[0] + open_x) * in.x + (rate[1] + open_y) * in.y +
-                                           (rate[2] + open_z) * in.z);
+    const Floats gained =
+        source + 0.5f * ((rate[0] + open_x) * in.x + (rate[1] + open_y) * in.y + (rate[2] + open_z) * in.z);
     const Floats lost = extinction + open_x + open_y + open_z;
     mean = lost > 0.f ? gained / lost : none;
     out.x = closed_x ? none : 2.f * mean - in.x;
@@ -72,7 +73,8 @@ void sweep(const detail::SweptRow& row, glm::ivec2 begin, glm::ivec2 end) {
     for (int j = 0; j < end.y - begin.y; ++j) {
       const int y = place(row.backward[1], begin.y, end.y, j);
       float* const face_x = row.face_x + static_cast<std::size_t>(z * row.size.y + y) * stride;
-      const std::uint32_t* const slots = row.slot + static_cast<std::size_t>(z * row.size.y + y) * static_cast<std::size_t>(row.size.x);
+      const std::uint32_t* const slots =
+          row.slot + static_cast<std::size_t>(z * row.size.y + y) * static_cast<std::size_t>(row.size.x);
       for (int i = 0; i < end.x - begin.x; ++i) {
         const int x = place(row.backward[0], begin.x, end.x, i);
         float* const face_y = row.face_y + static_cast<std::size_t>(z * row.size.x + x) * stride;
