@@ -23,7 +23,8 @@ Quarters byOctant(const std::vector<glm::dvec3>& axes) {
 }
 
 // How far a turned set is from what is wanted: first of all few rows, then, in the mean square, the fluxes through the
-// faces of a cell, which Lambert's law and the balance of a slab are made of. None may graze a face.
+// faces of a cell, which Lambert's law and the balance of a slab are made of. None may graze a face, and least of all
+// be level: level light passes a stand without end again and again.
 double defect(const std::vector<glm::dvec3>& axes) {
   constexpr double grazing = 0.02;
   std::size_t most = 0;

@@ -91,7 +91,8 @@ void Sweep::sweepRows(std::size_t begin, std::size_t end, std::span<const float>
                              .bands = bands_};
       for (int a = 0; a < 3; ++a)
         for (std::size_t lane = 0; lane < kLanes; ++lane)
-          swept.rate[a][lane] = 2.f * std::abs(ordinates_.direction(row * kLanes + lane)[a]) / grid_.side[a];
+          swept.rate[a][lane] =
+              std::abs(ordinates_.direction(row * kLanes + lane)[a]) / (detail::kOutwardShare * grid_.side[a]);
       if (swept.backward[0]) tile.x = tiles.x - 1 - tile.x;
       if (swept.backward[1]) tile.y = tiles.y - 1 - tile.y;
       sweep(swept, tile * kTile, glm::min((tile + 1) * kTile, glm::ivec2(grid_.size)));

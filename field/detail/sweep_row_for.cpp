@@ -22,6 +22,8 @@ typedef std::int32_t Integers __attribute__((vector_size(kLanes * sizeof(float))
   return found != 0;
 }
 
+constexpr float kOutward = detail::kOutwardShare, kOut = 1.f / kOutward, kIn = kOut - 1.f;
+
 struct Faces {
   Floats x, y, z;
 };
@@ -39,13 +41,14 @@ struct Faces {
     const Floats none{};
     const Floats open_x = closed_x ? none : rate[0], open_y = closed_y ? none : rate[1],
                  open_z = closed_z ? none : rate[2];
-    const Floats gained =
-        source + 0.5f * ((rate[0] + open_x) * in.x + (rate[1] + open_y) * in.y + (rate[2] + open_z) * in.z);
+    const Floats all = rate[0] * in.x + rate[1] * in.y + rate[2] * in.z,
+                 open = open_x * in.x + open_y * in.y + open_z * in.z;
+    const Floats gained = source + open + kOutward * (all - open);
     const Floats lost = extinction + open_x + open_y + open_z;
     mean = lost > 0.f ? gained / lost : none;
-    out.x = closed_x ? none : 2.f * mean - in.x;
-    out.y = closed_y ? none : 2.f * mean - in.y;
-    out.z = closed_z ? none : 2.f * mean - in.z;
+    out.x = closed_x ? none : kOut * mean - kIn * in.x;
+    out.y = closed_y ? none : kOut * mean - kIn * in.y;
+    out.z = closed_z ? none : kOut * mean - kIn * in.z;
     if (!any((out.x < 0.f) | (out.y < 0.f) | (out.z < 0.f))) break;
   }
   return mean;
@@ -55,7 +58,7 @@ struct Faces {
                                           float* face_x, float* face_y, float* face_z) {
   const Faces in{load(face_x), load(face_y), load(face_z)};
   Floats mean = (source + rate[0] * in.x + rate[1] * in.y + rate[2] * in.z) * per_lost;
-  Faces out{2.f * mean - in.x, 2.f * mean - in.y, 2.f * mean - in.z};
+  Faces out{kOut * mean - kIn * in.x, kOut * mean - kIn * in.y, kOut * mean - kIn * in.z};
   if (any((out.x < 0.f) | (out.y < 0.f) | (out.z < 0.f))) mean = fixedUp(rate, extinction, source, in, out);
   store(out.x, face_x);
   store(out.y, face_y);
