@@ -1,5 +1,6 @@
 #include "field/cell_medium.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -66,6 +67,37 @@ void placeCells(SweepGrid& grid, std::span<const PlacedElements> trees, const Ce
   require(cells <= kMostCells && 4. * cells <= availableMemory(), "cells of the field", cells,
           "few enough for memory, 4 bytes each; larger cells or fewer trees");
   grid.size = glm::ivec3(count);
+}
+
+// Gives cells with pieces their slots, and sorts pieces by slots and by elements.
+void fill(CellMedium& medium, std::span<const std::vector<PlacedPiece>> of_tree) {
+  SweepGrid& grid = medium.grid;
+  grid.slot.assign(grid.count(), SweepGrid::kEmpty);
+  for (const auto& pieces : of_tree)
+    for (const PlacedPiece& piece : pieces) grid.slot[piece.cell] = 0;
+  for (std::uint32_t cell = 0; cell < grid.slot.size(); ++cell)
+    if (grid.slot[cell] != SweepGrid::kEmpty) {
+      grid.slot[cell] = static_cast<std::uint32_t>(grid.cells.size());
+      grid.cells.push_back(cell);
+    }
+  medium.first_piece.assign(grid.cells.size() + 1, 0);
+  medium.first_of.assign(medium.area.size() + 1, 0);
+  for (const auto& pieces : of_tree)
+    for (const PlacedPiece& piece : pieces) {
+      ++medium.first_piece[grid.slot[piece.cell] + 1];
+      ++medium.first_of[piece.element + 1];
+    }
+  for (std::size_t i = 1; i < medium.first_piece.size(); ++i) medium.first_piece[i] += medium.first_piece[i - 1];
+  for (std::size_t i = 1; i < medium.first_of.size(); ++i) medium.first_of[i] += medium.first_of[i - 1];
+  medium.pieces.resize(medium.first_piece.back());
+  medium.of_element.resize(medium.first_of.back());
+  std::vector<std::uint32_t> next(medium.first_piece), next_of(medium.first_of);
+  for (const auto& pieces : of_tree)
+    for (const PlacedPiece& piece : pieces) {
+      const std::uint32_t place = next[grid.slot[piece.cell]]++;
+      medium.pieces[place] = {piece.element, static_cast<float>(piece.area)};
+      medium.of_element[next_of[piece.element]++] = place;
+    }
 }
 
 }  // namespace
@@ -147,32 +179,28 @@ CellMedium cellMedium(std::span<const PlacedElements> trees, const CellRule& rul
     pieces.resize(kept);
   });
 
-  grid.slot.assign(grid.count(), SweepGrid::kEmpty);
-  for (const auto& pieces : of_tree)
-    for (const PlacedPiece& piece : pieces) grid.slot[piece.cell] = 0;
-  for (std::uint32_t cell = 0; cell < grid.slot.size(); ++cell)
-    if (grid.slot[cell] != SweepGrid::kEmpty) {
-      grid.slot[cell] = static_cast<std::uint32_t>(grid.cells.size());
-      grid.cells.push_back(cell);
-    }
-  medium.first_piece.assign(grid.cells.size() + 1, 0);
-  medium.first_of.assign(medium.area.size() + 1, 0);
-  for (const auto& pieces : of_tree)
-    for (const PlacedPiece& piece : pieces) {
-      ++medium.first_piece[grid.slot[piece.cell] + 1];
-      ++medium.first_of[piece.element + 1];
-    }
-  for (std::size_t i = 1; i < medium.first_piece.size(); ++i) medium.first_piece[i] += medium.first_piece[i - 1];
-  for (std::size_t i = 1; i < medium.first_of.size(); ++i) medium.first_of[i] += medium.first_of[i - 1];
-  medium.pieces.resize(medium.first_piece.back());
-  medium.of_element.resize(medium.first_of.back());
-  std::vector<std::uint32_t> next(medium.first_piece), next_of(medium.first_of);
-  for (const auto& pieces : of_tree)
-    for (const PlacedPiece& piece : pieces) {
-      const std::uint32_t place = next[grid.slot[piece.cell]]++;
-      medium.pieces[place] = {piece.element, static_cast<float>(piece.area)};
-      medium.of_element[next_of[piece.element]++] = place;
-    }
+  fill(medium, of_tree);
+  return medium;
+}
+
+// (F20)
+CellMedium turbidMedium(SweepGrid grid, std::span<const CellLeaves> leaves) {
+  CellMedium medium;
+  medium.grid = std::move(grid);
+  std::vector<std::vector<PlacedPiece>> pieces(1);
+  const std::size_t cells = medium.grid.count();
+  for (const CellLeaves& some : leaves) {
+    require(some.cell < cells, "cell of leaves", some.cell, fmt::format("below {}", cells));
+    require(some.area > 0.f && std::isfinite(some.area), "area of leaves", some.area, "above 0");
+    pieces[0].push_back({some.cell, static_cast<std::uint32_t>(medium.area.size()), double{some.area}});
+    medium.normal.emplace_back(0.f);
+    medium.area.push_back(some.area);
+    medium.material.push_back(2 * some.kind);
+  }
+  medium.first_element = {0, static_cast<std::uint32_t>(medium.area.size())};
+  std::stable_sort(pieces[0].begin(), pieces[0].end(),
+                   [](const PlacedPiece& p, const PlacedPiece& q) { return p.cell < q.cell; });
+  fill(medium, pieces);
   return medium;
 }
 

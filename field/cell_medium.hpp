@@ -38,7 +38,7 @@ struct CellMedium {
   std::vector<std::uint32_t> first_piece;    // of each slot, and the end
   std::vector<std::uint32_t> of_element;     // numbers of pieces, element after element
   std::vector<std::uint32_t> first_of;       // of each element in of_element, and the end
-  std::vector<glm::vec3> normal;             // of each element, of its front
+  std::vector<glm::vec3> normal;             // of each element, of its front; 0: leaves turned every way
   std::vector<float> area;                   // of each element, as in its pieces [m^2]
   std::vector<std::uint32_t> material;       // of each element: twice the kind of its tree; one more for wood
   std::vector<std::uint32_t> first_element;  // of each tree, and the end
@@ -48,5 +48,15 @@ struct CellMedium {
 // Throws InvalidInput on no tree, cells out of their range, and on more cells or pieces than memory has room for.
 CellMedium cellMedium(std::span<const PlacedElements> trees, const CellRule& rule = {},
                       const std::optional<glm::vec2>& period = std::nullopt);
+
+// Leaves turned every way that fill a cell evenly.
+struct CellLeaves {
+  std::uint32_t cell, kind;  // of the grid, of tree
+  float area;                // one-sided [m^2], > 0
+};
+
+// (F20) A medium of leaves too small and too many to be told apart: those of a kind in a cell are one element. `grid`
+// needs no slots yet. Throws InvalidInput on a cell that is none, and an area that is not above 0.
+CellMedium turbidMedium(SweepGrid grid, std::span<const CellLeaves> leaves);
 
 }  // namespace sunfleck

@@ -53,6 +53,12 @@ struct GridSolution {
   std::string told;                      // why there is no steady state, or none was found
 };
 
+// A sun of irradiance 1 on a plane that faces it, as it comes through the cells.
+struct CellSun {
+  std::vector<float> direct;  // irradiance of each element and side
+  std::vector<float> ground;  // of each column of cells
+};
+
 // (F17) Light among leaves by discrete ordinates in the cells of a CellMedium alone, quick and some per cent off. All
 // that depends on neither light nor optics is kept. The same to the bit for any number of threads; not to be used by
 // several at once.
@@ -72,6 +78,10 @@ class GridField {
   // Throws InvalidInput on no band or more than kMostBands, a share out of its range, light that is not finite or
   // negative, arrays that do not fit the medium, and on more memory than there is.
   GridSolution solve(const GridLight& light, const GridEffort& effort = {});
+
+  // (F21) Direct light by extinction in the cells: for media of turbid leaves, and for stands in which the light of
+  // single leaves does not count. Throws InvalidInput on a direction that is not a unit vector that goes down.
+  CellSun sunThroughCells(const Direction& along) const;
 
   // Light of even radiance from everywhere above, for each band [radiance]; beyond the sides of a single stand the
   // ground sends up `ground` [radiance].

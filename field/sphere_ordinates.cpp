@@ -62,33 +62,46 @@ std::vector<glm::dvec3> wellTurned(const std::vector<Direction>& spread) {
   return best;
 }
 
+std::size_t octantOf(const glm::dvec3& s) {
+  return (s.x < 0. ? 1u : 0u) + (s.y < 0. ? 2u : 0u) + (s.z < 0. ? 4u : 0u);
+}
+
 }  // namespace
 
-SphereOrdinates::SphereOrdinates(int directions) {
-  require(directions >= 8 && directions <= 2048 && directions % 2 == 0, "directions", directions,
-          "an even number of 8 to 2048");
-  const Quarters quarters = byOctant(wellTurned(spreadAxes(directions / 2)));
-  std::size_t most = 0;
-  for (const auto& quarter : quarters) most = std::max(most, quarter.size());
+SphereOrdinates::SphereOrdinates(const std::array<std::vector<glm::dvec3>, kOctants>& of_octants, float weight) {
+  std::size_t most = 1;
+  for (const auto& of_octant : of_octants) most = std::max(most, of_octant.size());
   const std::size_t lanes = (most + kLanes - 1) / kLanes * kLanes;
-  directions_.resize(lanes * kOctants);
-  weights_.assign(lanes * kOctants, 0.f);
-  const float weight = 4.f * std::numbers::pi_v<float> / static_cast<float>(directions);
-  for (std::size_t octant = 0; octant < 4; ++octant) {
-    const glm::dvec3 filling =
-        glm::dvec3(octant & 1 ? -1. : 1., octant & 2 ? -1. : 1., 1.) / std::numbers::sqrt3;  // of weight 0
+  for (std::size_t octant = 0; octant < kOctants; ++octant) {
+    const glm::dvec3 filling = glm::dvec3(octant & 1 ? -1. : 1., octant & 2 ? -1. : 1., octant & 4 ? -1. : 1.);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const bool filled = lane < quarters[octant].size();
-      const Direction s = glm::normalize(glm::vec3(filled ? quarters[octant][lane] : filling));
-      const std::size_t up = octant * lanes + lane, down = (7 - octant) * lanes + lane;
-      directions_[up] = s;
-      directions_[down] = -s;
-      weights_[up] = weights_[down] = filled ? weight : 0.f;
+      const bool filled = lane < of_octants[octant].size();
+      directions_.push_back(glm::normalize(glm::vec3(filled ? of_octants[octant][lane] : filling)));
+      weights_.push_back(filled ? weight : 0.f);
     }
   }
   for (int a = 0; a < 3; ++a)
     for (std::size_t i = 0; i < size(); ++i)
       half_flux_[static_cast<std::size_t>(a)] += 0.5 * double{weights_[i]} * std::abs(double{directions_[i][a]});
+}
+
+// (F13)
+SphereOrdinates::SphereOrdinates(int directions) {
+  require(directions >= 8 && directions <= 2048 && directions % 2 == 0, "directions", directions,
+          "an even number of 8 to 2048");
+  std::array<std::vector<glm::dvec3>, kOctants> of_octants;
+  for (const glm::dvec3& axis : wellTurned(spreadAxes(directions / 2))) {
+    // A direction and its opposite stand at the same place of opposite octants.
+    of_octants[octantOf(axis)].push_back(axis);
+    of_octants[kOctants - 1 - octantOf(axis)].push_back(-axis);
+  }
+  *this = SphereOrdinates(of_octants, 4.f * std::numbers::pi_v<float> / static_cast<float>(directions));
+}
+
+SphereOrdinates SphereOrdinates::beam(const Direction& along) {
+  std::array<std::vector<glm::dvec3>, kOctants> of_octants;
+  of_octants[octantOf(along)].emplace_back(along);
+  return {of_octants, 1.f};
 }
 
 }  // namespace sunfleck

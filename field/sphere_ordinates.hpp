@@ -20,6 +20,9 @@ class SphereOrdinates {
   //   directions  how many, of weight > 0: even, 8 .. 2048; 64 fill all lanes
   explicit SphereOrdinates(int directions = 64);
 
+  // One direction alone, of weight 1: a beam.
+  static SphereOrdinates beam(const Direction& along);
+
   std::size_t rows() const { return directions_.size() / kLanes; }
   std::size_t rowsOfOctant() const { return rows() / kOctants; }
   std::size_t octant(std::size_t row) const { return row / rowsOfOctant(); }
@@ -34,6 +37,8 @@ class SphereOrdinates {
   double halfFlux(int axis) const { return half_flux_[static_cast<std::size_t>(axis)]; }
 
  private:
+  SphereOrdinates(const std::array<std::vector<glm::dvec3>, kOctants>& of_octants, float weight);
+
   std::vector<Direction> directions_;
   std::vector<float> weights_;
   std::array<double, 3> half_flux_{};

@@ -21,8 +21,8 @@ struct ExchangeRows {
 
 // Elements of all pieces; figures of a slot stand row after row, band after band, 8 lanes each.
 struct ExchangeElements {
-  const glm::vec3* normal;
-  const float* fullness;  // 2 pi over the sum of weight times |n.s|, which makes either side's half of the sphere pi
+  const glm::vec3* normal;  // 0: leaves turned every way
+  const float* fullness;    // 2 pi over the sum of weight times |n.s|, which makes either side's half of the sphere pi
 };
 
 struct CellExchange {

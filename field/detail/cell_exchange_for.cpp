@@ -28,6 +28,10 @@ typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 [[gnu::always_inline]] inline Floats positive(Floats lanes) {
   return lanes > 0.f ? lanes : Floats{};
 }
+// What is seen of either side, in the mean, of leaves turned every way, which have no normal.
+[[gnu::always_inline]] inline float seenOfAll(const glm::vec3& n) {
+  return n.x == 0.f && n.y == 0.f && n.z == 0.f ? 0.25f : 0.f;
+}
 
 void extinction(const ExchangeRows& rows, const ExchangeElements& elements, const Piece* begin, const Piece* end,
                 float per_volume, float* sigma) {
@@ -35,7 +39,8 @@ void extinction(const ExchangeRows& rows, const ExchangeElements& elements, cons
     Floats total{};
     for (const Piece* piece = begin; piece != end; ++piece) {
       const Floats d = cosine(rows, row, elements.normal[piece->element]);
-      total += (piece->area * elements.fullness[piece->element]) * (d > 0.f ? d : -d);
+      total += (piece->area * elements.fullness[piece->element]) *
+               ((d > 0.f ? d : -d) + 2.f * seenOfAll(elements.normal[piece->element]));
     }
     store(total * per_volume, sigma + row * kLanes);
   }
@@ -48,9 +53,10 @@ void sendBands(const ExchangeRows& rows, const ExchangeElements& elements, const
     Floats up[kBands], down[kBands];
     for (std::size_t band = 0; band < kBands; ++band) up[band] = down[band] = Floats{};
     for (const Piece* piece = begin; piece != end; ++piece) {
-      const Floats d =
-          cosine(rows, row, elements.normal[piece->element]) * (piece->area * elements.fullness[piece->element]);
-      const Floats towards = positive(d), away = positive(-d);
+      const float area = piece->area * elements.fullness[piece->element];
+      const Floats d = cosine(rows, row, elements.normal[piece->element]) * area;
+      const float all = area * seenOfAll(elements.normal[piece->element]);
+      const Floats towards = positive(d) + all, away = positive(-d) + all;
       const float* const front = radiance + std::size_t{piece->element} * 2 * kBands;
       const float* const back = front + kBands;
       for (std::size_t band = 0; band < kBands; ++band) {
@@ -72,9 +78,10 @@ void receiveBands(const ExchangeRows& rows, const ExchangeElements& elements, co
     Floats front[kBands], back[kBands];
     for (std::size_t band = 0; band < kBands; ++band) front[band] = back[band] = Floats{};
     const glm::vec3 normal = elements.normal[piece->element];
+    const float all = seenOfAll(normal);
     for (std::size_t row = 0; row < rows.pairs; ++row) {
-      const Floats d = cosine(rows, row, normal) * load(rows.weight + row * kLanes);
-      const Floats towards = positive(d), away = positive(-d);
+      const Floats weight = load(rows.weight + row * kLanes), d = cosine(rows, row, normal) * weight;
+      const Floats towards = positive(d) + all * weight, away = positive(-d) + all * weight;
       for (std::size_t band = 0; band < kBands; ++band) {
         const Floats up = load(radiance + (row * kBands + band) * kLanes),
                      down = load(radiance + ((rows.pairs + row) * kBands + band) * kLanes);
