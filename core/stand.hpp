@@ -19,7 +19,7 @@ struct Placement {
 // The arrangement of the trees. With a period, the whole arrangement repeats without end in x and y.
 struct Stand {
   std::vector<Placement> trees{Placement{}};
-  std::optional<glm::vec2> period{};          // side lengths of the repeated rectangle [m], > 0
+  std::optional<glm::vec2> period{};  // side lengths of the repeated rectangle [m], > 0
   bool operator==(const Stand&) const = default;
 };
 

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <future>
 #include <glm/geometric.hpp>
 #include <thread>
 
 #include "apps/view/session.hpp"
 #include "core/require.hpp"
+#include "render/compare/exact_powers.hpp"
 #include "tests/random_leaves.hpp"
 
 namespace sunfleck::view {
@@ -130,6 +132,103 @@ TEST(Session, ComputesAnewWhatAnEditNeedsAlone) {
   session.undo();
   ASSERT_TRUE(settle(session));
   EXPECT_EQ(session.document().scene.sun().zenith, 0.f);
+}
+
+// 8 x 8 trees. A sun that turns makes one map, each tree's depths and G along it; a tree that moves makes no map, and
+// changes those trees alone that stand so near that their leaves count in each other's cells.
+TEST(Session, CountsWhatAStandComputesAnew) {
+  Document document = smallDocument();
+  document.scene.stand.trees.clear();
+  for (int i = 0; i < 64; ++i)
+    document.scene.stand.trees.push_back(
+        {.position = {3.f * static_cast<float>(i % 8), 3.f * static_cast<float>(i / 8), 0.f}});
+  Session session("grid", [&] { return document; });
+  ASSERT_TRUE(settle(session));
+  const auto anew = [&](const std::string& name) {
+    for (const ProductCost& cost : session.lastCosts())
+      if (cost.name == name) return cost.made + cost.adjusted;
+    ADD_FAILURE() << name;
+    return std::size_t{0};
+  };
+  const std::size_t all_depths = anew("depths");
+  EXPECT_GT(session.preparedSeconds(), 0.);
+  session.edit(SetSuns{{Sun{.zenith = 0.7f}}});
+  ASSERT_TRUE(settle(session));
+  EXPECT_EQ(anew("light maps"), 1u);
+  EXPECT_EQ(anew("G"), 64u);
+  for (const char* name : {"cells", "sample maps", "depths"}) EXPECT_EQ(anew(name), 0u) << name;
+  session.edit(MoveTree{27, {10.f, 9.3f, 0.f}});
+  ASSERT_TRUE(settle(session));
+  for (const char* name : {"cells", "sample maps", "light maps"}) EXPECT_EQ(anew(name), 0u) << name;
+  EXPECT_GT(anew("depths"), 0u);
+  EXPECT_LT(anew("depths"), all_depths);
+  EXPECT_LT(anew("G"), 64u);
+}
+
+// The drawing thread must find the tables there: it asks drawable() first.
+TEST(Session, MakesExactTablesInTheBackground) {
+  Session session("small", [] { return smallDocument(); });
+  ASSERT_TRUE(settle(session));
+  EXPECT_FALSE(session.drawable(Model::pp));
+  session.edit(SetModel{Model::pp});
+  EXPECT_FALSE(session.upToDate());
+  ASSERT_TRUE(settle(session));
+  EXPECT_TRUE(session.drawable(Model::pp));
+  EXPECT_EQ(session.exactTables().made(), 1u);  // all bands have the same leaves
+  session.undo();
+  session.look.other = Model::pp;  // to be compared with
+  ASSERT_TRUE(settle(session));
+  EXPECT_TRUE(session.drawable(Model::pp));
+  EXPECT_EQ(session.exactTables().made(), 1u);
+  EXPECT_EQ(session.exactTables().of(LeafOptics{}).nodes.size(), exactPowerTable(LeafOptics{}).nodes.size());
+  EXPECT_EQ(session.exactTables().made(), 1u);  // it was there
+}
+
+TEST(Session, TellsOfFilesWhenTheyAreWritten) {
+  Session session("small", [] { return smallDocument(); });
+  ASSERT_TRUE(settle(session));
+  std::promise<void> goes;
+  session.write("slow.exr", [going = goes.get_future().share()] { going.wait(); });
+  session.advance();
+  EXPECT_TRUE(session.hasTasks());
+  EXPECT_EQ(session.writes(), "writing slow.exr");
+  goes.set_value();
+  ASSERT_TRUE(comes([&] {
+    session.advance();
+    return !session.hasTasks();
+  }));
+  EXPECT_EQ(session.message(), "wrote slow.exr");
+  session.write("bad.exr", [] { throw InvalidInput("bad.exr: cannot be written"); });
+  ASSERT_TRUE(comes([&] {
+    session.advance();
+    return session.messageIsError();
+  }));
+  EXPECT_EQ(session.message(), "bad.exr: cannot be written");
+}
+
+TEST(Session, SetsANewKindBesideTheOthers) {
+  Session session("small", [] { return smallDocument(); });
+  ASSERT_TRUE(settle(session));
+  const Bounds before = bounds(session.document().scene);
+  session.addKind("cherry", 1);
+  ASSERT_TRUE(settle(session));
+  const Scene& scene = session.document().scene;
+  ASSERT_EQ(scene.stand.trees.size(), 3u);
+  const Placement& tree = scene.stand.trees.back();
+  EXPECT_FLOAT_EQ(bounds(*scene.kindOf(tree).mesh).low.x + tree.position.x, before.high.x);
+}
+
+// A stand without trees can be looked at, and planted again.
+TEST(Session, DeletesTheLastTree) {
+  Session session("small", [] { return smallDocument(); });
+  ASSERT_TRUE(settle(session));
+  session.edit(RemoveTrees{{0, 1}});
+  ASSERT_TRUE(settle(session));
+  EXPECT_TRUE(session.document().scene.stand.trees.empty());
+  session.showWholeStand();
+  session.addTree({1.f, 2.f}, 0);
+  ASSERT_TRUE(settle(session));
+  EXPECT_EQ(session.document().scene.stand.trees.size(), 1u);
 }
 
 TEST(Session, PaintsNoTreeTooNear) {

@@ -23,6 +23,11 @@ void ExactTables::make(std::span<const TreeKind> kinds, const Progress& progress
   }
 }
 
+std::size_t ExactTables::made() const {
+  const std::lock_guard lock(mutex_);
+  return tables_.size();
+}
+
 spp::PowerTable ExactTables::of(const LeafOptics& leaf) {
   const Key key(leaf.reflectance, leaf.transmittance);
   {

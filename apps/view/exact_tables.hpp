@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <mutex>
 #include <span>
@@ -18,10 +19,11 @@ class ExactTables {
   void make(std::span<const TreeKind> kinds, const Progress& progress = {});
   // That of such leaves, made now where there is none.
   spp::PowerTable of(const LeafOptics& leaf);
+  std::size_t made() const;  // so far
 
  private:
   using Key = std::pair<float, float>;  // reflectance and transmittance, all that it depends on
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<Key, spp::PowerTable> tables_;
 };
 

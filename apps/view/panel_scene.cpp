@@ -61,7 +61,7 @@ void Panels::drawScene(Session& session) {
     tip("Of the random numbers by which a species grows");
     if (ImGui::Button("Grow or read"))
       session.attempt([&] { session.addKind(new_kind, static_cast<std::uint64_t>(std::max(new_seed, 1))); });
-    tip("In the background; a tree of it is set where the camera looks");
+    tip("In the background; a tree of it is set beside the others, towards +x");
     ImGui::TreePop();
   }
   drawTrees(session);

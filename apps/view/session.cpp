@@ -217,8 +217,13 @@ void Session::prepare(const std::string& what, std::function<SceneEdit()> make) 
 }
 
 void Session::addKind(const std::string& species_or_file, std::uint64_t seed) {
-  prepare("growing " + species_or_file, [=, place = glm::vec3(glm::vec2(camera.target), groundHeight())] {
-    return AddKind{readKind(species_or_file, seed), place};
+  const Bounds stand = bounds(document().scene);
+  prepare("growing " + species_or_file, [=, ground = groundHeight()] {
+    const TreeKind kind = readKind(species_or_file, seed);
+    glm::vec2 place(0.f);
+    if (const Bounds tree = bounds(*kind.mesh); !stand.empty() && !tree.empty())
+      place = {stand.high.x - tree.low.x, stand.centre().y - tree.centre().y};
+    return AddKind{kind, {place, ground}};
   });
 }
 

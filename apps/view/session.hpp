@@ -74,7 +74,8 @@ class Session {
   // Where the sun stands on a date (2026-06-21) at a time (12:00, UTC) and a place [degrees]; +x is east, +y north.
   void turnSunByDate(std::size_t sun, const std::string& date, const std::string& time, double latitude,
                      double longitude);
-  // Grows a species or reads a file in the background, and adds it as a kind.
+  // Grows a species or reads a file in the background, and adds it as a kind, of which a tree stands beside the others,
+  // towards +x.
   void addKind(const std::string& species_or_file, std::uint64_t seed);
   // Reads a panorama in the background, and makes it the sky. Its brightness stays where it was one before.
   //   rotation  azimuth of its middle column [rad]
