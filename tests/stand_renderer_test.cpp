@@ -112,12 +112,13 @@ TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
         kinds.insert(value(image, x, y, "id.kind"));
         for (const std::string band : {"R", "G", "B"}) {
           float sum = 0.f;
-          for (const std::string part : {"direct.", "single.", "multiple.", "sky."})
-            sum += value(image, x, y, part + band);
+          for (const std::string part : {"direct.", "multiple.", "sky."}) sum += value(image, x, y, part + band);
+          if (tellsSingle(model)) sum += value(image, x, y, "single." + band);
           ASSERT_NEAR(value(image, x, y, band), sum, 1e-6f);
         }
       }
     EXPECT_EQ(trees.size(), 6u);  // five trees and none
+    EXPECT_EQ(std::ranges::count(image.channels, "single.R"), tellsSingle(model) ? 1 : 0);
     EXPECT_EQ(kinds, (std::set<float>{-1.f, 0.f, 1.f}));
   }
 }
@@ -158,8 +159,10 @@ TEST(R27_StandRenderer, ShadesAsCppDoes) {
           const std::string name = bands[static_cast<std::size_t>(band)];
           ASSERT_NEAR(at(("direct." + name).c_str()), shaded.direct[band],
                       kShading * (1.f + 10.f * shaded.direct[band]));
-          ASSERT_NEAR(at(("multiple." + name).c_str()), shaded.multiple[band],
-                      kShading * (1.f + shaded.multiple[band]));
+          ASSERT_NEAR(at(("multiple." + name).c_str()), shaded.scattered[band] - shaded.single[band],
+                      kShading * (1.f + shaded.scattered[band]));
+          if (tellsSingle(model))
+            ASSERT_NEAR(at(("single." + name).c_str()), shaded.single[band], kShading * (1.f + shaded.single[band]));
         }
       }
     EXPECT_GT(leaves, 1000);

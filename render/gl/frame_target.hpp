@@ -21,7 +21,7 @@ enum class Layer {
   sky,       // of the sky's light, scattered or seen behind all
   geometry,  // normal towards the eye, and distance from the eye or the target's plane along the middle line of sight
              // [m]
-  foliage,   // n+, n-, visible share of the light, G (see View::layer_light)
+  foliage,   // n+, n-, visible share of the first light, G
   ids,       // drawn tree or kGround or kNone, its triangle, its kind, its leaf; bits of whole numbers
 };
 inline constexpr int kLayers = 8;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "core/require.hpp"
@@ -78,7 +79,8 @@ Image standPicture(const Context& context, StandRenderer& renderer, const Camera
   requireDrawable(camera);
   Image image{.width = camera.width, .height = camera.height, .channels = {}, .values = {}};
   std::vector<Layer> layers{Layer::total};
-  layers.insert(layers.end(), effort.layers.begin(), effort.layers.end());
+  std::ranges::copy_if(effort.layers, std::back_inserter(layers),
+                       [&](Layer layer) { return layer != Layer::single || tellsSingle(effort.model); });
   std::vector<std::size_t> first_channel;
   for (const Layer layer : layers) {
     first_channel.push_back(image.channels.size());

@@ -133,7 +133,6 @@ void StandRenderer::bindFrame(const View& view, const FrameTarget& target) {
   frame.corner = glm::vec4(corner, 0.f);
   frame.pixel_right = glm::vec4(pixel * axes.right, static_cast<float>(view.low.x) + view.offset.x);
   frame.pixel_up = glm::vec4(pixel * axes.up, static_cast<float>(view.low.y) + view.offset.y);
-  frame.counts.w = view.layer_light;
   frame_.write(0, std::as_bytes(std::span(&frame, 1)));
   frame_.bindUniform(0);
 }
@@ -172,7 +171,7 @@ std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const 
     const glm::vec3 there = look.from + away * look.along;
     const bool seen = data_.frame().ground_albedo.w > 0.f && look.along.z < 0.f &&
                       (away > 0.f || !view.camera.perspective()) &&
-                      (data_.frame().counts.y > 0u || glm::distance(there, ground.centre) < ground.radius);
+                      (data_.frame().hasSky() || glm::distance(there, ground.centre) < ground.radius);
     return seen ? std::optional<Pick>({.tree = {}, .leaf = {}, .place = there}) : std::nullopt;
   }
   const StandData::Seen seen = data_.seen(id.x);

@@ -19,7 +19,6 @@ struct View {
   glm::vec2 offset{0.f};     // of the sample in each pixel from its middle [pixel]
   bool accumulate = false;   // add to the radiances that the target holds
   float piece_pixels = 0.f;  // leaves and twigs are drawn fewer and larger, up to so many pixels (R25); 0: as they are
-  std::uint32_t layer_light = 0;  // whose foliage is told in layers
 };
 
 // Of the samples of a picture: each pair lies opposite about the middle of the pixel, so that the mean over the pixel
