@@ -268,6 +268,31 @@ TEST(R3_StandRenderer, LightsTheGroundByTreesBesideThePicture) {
   EXPECT_LT(least, 0.95f);
 }
 
+// (R24) Check that no pixel but those of the empty sky is left out of shading: a black sky, under which all are shaded,
+// changes nothing where there is no ground; from afar, from within the stand, in parts, and of samples in sum.
+TEST(R24_StandRenderer, LeavesOutNothingButTheSky) {
+  Woods woods;
+  woods.scene.ground_albedo = glm::vec3(0.f);
+  woods.scene.sky = {};
+  Drawing without(woods.stand());
+  woods.scene.sky.kind = SceneSky::Kind::uniform;
+  woods.scene.sky.irradiance = glm::dvec3(0.);
+  Drawing with(woods.stand());
+  Camera aside = woods.camera(64), within = inPerspective(woods.camera(64));
+  aside.half_width *= 3.f;
+  within.half_width *= 0.1f;
+  for (const Camera& camera : {woods.camera(64), inPerspective(woods.camera(64)), aside, within}) {
+    const gl::PictureEffort effort{.samples = 2, .layers = kAll};
+    const Image some = without.picture(camera, effort), all = with.picture(camera, effort);
+    ASSERT_EQ(some.values.size(), all.values.size());
+    for (std::size_t i = 0; i < all.values.size(); ++i)
+      // (infinite depths are equal)
+      ASSERT_TRUE(some.values[i] == all.values[i] ||
+                  std::abs(some.values[i] - all.values[i]) <= kShading * (1.f + std::abs(all.values[i])))
+          << i;
+  }
+}
+
 // (R25) Check that with fewer and larger leaves the mean radiance and coverage stay within a few parts in a hundred,
 // which is what a random part of some hundred leaves spreads, that the leaves shown are the tree's, and the work is
 // less.

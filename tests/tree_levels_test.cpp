@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <set>
 
 #include "plants/random_leaves.hpp"
@@ -30,8 +31,9 @@ std::set<std::uint32_t> leavesOf(const gl::TreeLevels& levels, const gl::Level& 
   return leaves;
 }
 
-// (R25) Check that each level has half the leaves of the one before, all of them among its leaves, and the same area
-// (to the roundings of some thousand vertices), and that it lies within the box.
+// (R25) Check that each level has the leaves of the one before by the root of 2, to a leaf, all of them among its
+// leaves and of one triangle each, and the same area (to the roundings of some thousand vertices), and that it lies
+// within the box.
 TEST(R25_TreeLevels, KeepTheAreaOfLeaves) {
   const TreeMesh mesh = randomCrown({}, 3);
   const gl::TreeLevels levels = gl::treeLevels(mesh);
@@ -43,7 +45,8 @@ TEST(R25_TreeLevels, KeepTheAreaOfLeaves) {
     EXPECT_NEAR(areaOf(levels, levels.leaves[i]), area, 1e-5 * area) << i;
     const std::set<std::uint32_t> now = leavesOf(levels, levels.leaves[i]);
     if (i > 0) {
-      EXPECT_NEAR(static_cast<double>(now.size()), 0.5 * static_cast<double>(before.size()), 1.);
+      EXPECT_NEAR(static_cast<double>(now.size()), std::numbers::sqrt2 / 2. * static_cast<double>(before.size()), 1.);
+      EXPECT_EQ(levels.leaves[i].endIndex() - levels.leaves[i].firstIndex(), 3 * now.size());
     }
     for (const std::uint32_t leaf : now) EXPECT_TRUE(before.contains(leaf));
     before = now;

@@ -2,7 +2,7 @@
 // light, once for each tree that may stand there.
 layout(binding = 0) uniform usamplerBuffer map_lines;      // first crossing, end of them, bits of the wood's depth
 layout(binding = 1) uniform usamplerBuffer map_crossings;  // bits of the depth from the map's origin plane [m], leaf
-layout(binding = 2) uniform usamplerBuffer light_cells;    // first entry of each cell of the lights' grids
+layout(binding = 2) uniform usamplerBuffer light_cells;    // entries of each cell of the lights' grids: first, end
 layout(binding = 3) uniform usamplerBuffer light_casters;  // bits of a tree's position [m], the tree
 
 struct Foliage {
@@ -16,8 +16,7 @@ uvec2 castersAt(uint light, vec3 place) {
   LightFrame of = light_frames[light];
   ivec2 cell = ivec2(floor((inLight(light, place).xy - vec2(of.right.w, of.up.w)) * of.travel.w));
   if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(of.grid.xy)))) return uvec2(0u);
-  int number = int(of.grid.z) + cell.y * int(of.grid.x) + cell.x;
-  return uvec2(texelFetch(light_cells, number).r, texelFetch(light_cells, number + 1).r);
+  return texelFetch(light_cells, int(of.grid.z) + cell.y * int(of.grid.x) + cell.x).xy;
 }
 
 struct Nearest {  // the four pixels nearest to a point, and what each counts
@@ -65,6 +64,7 @@ TreeFoliage foliageOfTree(MapFrame map, vec3 at, uint own, float wood_bias) {
 
   TreeFoliage of_tree = TreeFoliage(Foliage(0.0, 0.0, 0.0), -1e30);
   uint nearest = (near.part.x > 0.5 ? 1u : 0u) + (near.part.y > 0.5 ? 2u : 0u), shaded = 0u;
+  float crossed = 0.0;
   for (uint i = 0u; i < in_lower + in_upper; ++i) {
     bool is_upper = i >= in_lower;
     uint c = is_upper ? upper.x + i - in_lower : lower.x + i;
@@ -73,15 +73,13 @@ TreeFoliage foliageOfTree(MapFrame map, vec3 at, uint own, float wood_bias) {
     float weight = (is_right ? high_weight.x : low_weight.x) * (is_upper ? high_weight.y : low_weight.y);
     uvec2 crossing = texelFetch(map_crossings, int(crossings + c)).xy;
     float depth = uintBitsToFloat(crossing.x);
-    if (corner == nearest) of_tree.last = depth;
-    if (crossing.y == own) continue;
-    if (depth < at.z) {
-      of_tree.foliage.before += weight;
-      shaded |= 1u << corner;
-    } else {
-      of_tree.foliage.beyond += weight;
-    }
+    of_tree.last = corner == nearest ? depth : of_tree.last;
+    bool is_other = crossing.y != own, is_before = is_other && depth < at.z;
+    crossed += is_other ? weight : 0.0;
+    of_tree.foliage.before += is_before ? weight : 0.0;
+    shaded |= is_before ? 1u << corner : 0u;
   }
+  of_tree.foliage.beyond = crossed - of_tree.foliage.before;
   // Leaves and wood that hide the light.
   float depth = at.z - wood_bias;
   bvec4 open = bvec4((shaded & 1u) == 0u && depth <= uintBitsToFloat(lower_left.z),

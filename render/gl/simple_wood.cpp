@@ -126,19 +126,17 @@ SimpleWood simpleWood(const TreeMesh& mesh, float reach, float piece_area) {
     if (enlargement[piece] == 0.f) continue;
     const glm::vec3 a = joints.place(ends.first), b = joints.place(ends.second), middle = 0.5f * (a + b);
     const float length = glm::distance(a, b);
-    const glm::vec3 along = 0.5f * enlargement[piece] * (b - a);
+    // A triangle along the bone with its tip at either end.
+    const glm::vec3 along = (piece % 2 == 0 ? 0.5f : -0.5f) * enlargement[piece] * (b - a);
     const glm::vec3 aside =
-        0.5f * enlargement[piece] * static_cast<float>(areas[piece]) / length * across((b - a) / length, piece);
-    const std::array<glm::vec3, 4> corners{middle - along - aside, middle + along - aside, middle + along + aside,
-                                           middle - along + aside};
+        enlargement[piece] * static_cast<float>(areas[piece]) / length * across((b - a) / length, piece);
     const auto first = static_cast<std::uint32_t>(wood.shared_count);
-    for (const glm::uvec3& t : {glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)})
-      wood.triangles.push_back({.corners = {corners[t.x], corners[t.y], corners[t.z]},
-                                .shared = {first + t.x, first + t.y, first + t.z},
-                                .middle = middle,
-                                .leaf = TriangleData::kThinWood,
-                                .enlargement = enlargement[piece]});
-    wood.shared_count += 4;
+    wood.triangles.push_back({.corners = {middle - along - aside, middle + along, middle - along + aside},
+                              .shared = {first, first + 1, first + 2},
+                              .middle = middle,
+                              .leaf = TriangleData::kThinWood,
+                              .enlargement = enlargement[piece]});
+    wood.shared_count += 3;
   }
   return wood;
 }

@@ -39,7 +39,7 @@ StandData::StandData()
     : sky_(RadianceTexture::Read::cells, "a sky"),
       ground_sky_(RadianceTexture::Read::interpolated, "a ground"),
       triangles_(BufferTexture::Texel::rgba32ui, "the trees' triangles take"),
-      light_cells_(BufferTexture::Texel::r32ui, "the lists of trees in the light take"),
+      light_cells_(BufferTexture::Texel::rg32ui, "the lists of trees in the light take"),
       light_casters_(BufferTexture::Texel::rgba32ui, "the lists of trees in the light take"),
       trees_(BufferTexture::Texel::rgba32ui, "the trees take"),
       drawn_(BufferTexture::Texel::rgba32ui, "the trees take"),
@@ -192,7 +192,7 @@ std::size_t StandData::sendGrids(const DrawnStand& stand) {
   else
     lit_boxes.push_back({ground_.centre - half, ground_.centre + half});
 
-  std::vector<std::uint32_t> first_of_cells;
+  std::vector<glm::uvec2> cells;  // first and end of the casters of each
   std::vector<Standing> casters;
   const std::vector<glm::vec3> shifts = copies(stand, stand.periods_around);
   for (std::size_t light = 0; light < lights_.size(); ++light) {
@@ -209,18 +209,19 @@ std::size_t StandData::sendGrids(const DrawnStand& stand) {
                             .up = glm::vec4(axes.up, grid.low.y),
                             .travel = glm::vec4(axes.along, 1.f / grid.cell_size),
                             .grid = {static_cast<std::uint32_t>(grid.size.x), static_cast<std::uint32_t>(grid.size.y),
-                                     static_cast<std::uint32_t>(first_of_cells.size()), 0u}};
-    for (const std::uint32_t first : grid.first)
-      first_of_cells.push_back(first + static_cast<std::uint32_t>(casters.size()));
+                                     static_cast<std::uint32_t>(cells.size()), 0u}};
+    const auto before = static_cast<std::uint32_t>(casters.size());
+    for (std::size_t cell = 0; cell + 1 < grid.first.size(); ++cell)
+      cells.push_back(before + glm::uvec2(grid.first[cell], grid.first[cell + 1]));
     for (const std::uint32_t caster : grid.casters) {
       const std::size_t tree = caster % stand.trees.size();
       casters.push_back({.position = stand.trees[tree].position + shifts[caster / stand.trees.size()],
                          .tree = static_cast<std::uint32_t>(tree)});
     }
   }
-  light_cells_.assign(std::span<const std::uint32_t>(first_of_cells));
+  light_cells_.assign(std::span<const glm::uvec2>(cells));
   light_casters_.assign(std::span<const Standing>(casters));
-  return first_of_cells.size() * sizeof first_of_cells[0] + casters.size() * sizeof casters[0];
+  return cells.size() * sizeof cells[0] + casters.size() * sizeof casters[0];
 }
 
 void StandData::bind() const {

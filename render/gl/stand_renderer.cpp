@@ -183,9 +183,22 @@ std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const 
   return pick;
 }
 
+// All but the empty sky.
+PixelBox StandRenderer::shown(const View& view, glm::ivec2 size) const {
+  if (data_.frame().counts.y > 0u) return {.low = glm::ivec2(0), .high = size};
+  const glm::mat4 clip = clipFromWorld(view, size, reach(view));
+  const PixelBox trees = pixelsOf(data_.box(), clip, size);
+  if (data_.frame().ground_albedo.w == 0.f) return trees;
+  const GroundDisc& ground = data_.ground();
+  const glm::vec3 radius(ground.radius, ground.radius, 0.f);
+  const PixelBox disc = pixelsOf({ground.centre - radius, ground.centre + radius}, clip, size);
+  if (data_.box().empty()) return disc;
+  return {.low = glm::min(trees.low, disc.low), .high = glm::max(trees.high, disc.high)};
+}
+
 FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost cost) {
   cost.shading_seconds = secondsOf(timed_, [&] {
-    target.beginShading(view.accumulate);
+    target.beginShading(view.accumulate, shown(view, target.size()));
     data_.bind();
     glBindTextureUnit(6, target.visible());
     const ShadingBuffers& buffers = programs_->buffersOf(view.model, data_);
@@ -200,6 +213,7 @@ FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost 
         .use();
     glBindVertexArray(programs_->no_array.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_SCISSOR_TEST);
   });
   return cost;
 }
