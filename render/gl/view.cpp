@@ -7,14 +7,6 @@
 #include <glm/matrix.hpp>
 
 namespace sunfleck::gl {
-namespace {
-
-float eyeDistance(const Camera& camera) {
-  return camera.half_width / std::tan(0.5f * camera.field_of_view);
-}
-
-}  // namespace
-
 glm::vec2 sampleOffset(int number) {
   if (number == 0) return glm::vec2(0.f);
   const double pair = (number + 1) / 2;  // 1, 1, 2, 2, ...
