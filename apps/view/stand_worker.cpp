@@ -110,7 +110,12 @@ void StandWorker::work() {
 
 void StandWorker::make(StandWish wish) {
   const auto start = Clock::now();
-  if (!geometry_ || geometry_->effort() != wish.effort) geometry_ = std::make_unique<StandGeometry>(wish.effort);
+  const auto same = [](const GeometryEffort& a, const GeometryEffort& b) {
+    return a.light_resolution == b.light_resolution && a.sample_directions == b.sample_directions &&
+           a.sample_resolution == b.sample_resolution && a.cells == b.cells;
+  };
+  if (!geometry_ || !same(effort_, wish.effort)) geometry_ = std::make_unique<StandGeometry>(wish.effort);
+  effort_ = wish.effort;
   geometry_->update(wish.scene, wish.needs, std::nullopt, [this](double done) {
     const std::lock_guard lock(mutex_);
     done_ = done;

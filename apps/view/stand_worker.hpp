@@ -80,6 +80,7 @@ class StandWorker {
   std::chrono::steady_clock::time_point began_;
 
   std::unique_ptr<StandGeometry> geometry_;  // the thread's own, but while it is lent
+  GeometryEffort effort_;
   std::thread thread_;
 };
 
