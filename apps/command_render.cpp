@@ -110,6 +110,10 @@ std::vector<gl::Layer> layersOf(const RenderOptions& options) {
   if (options.layers.empty()) return {};
   if (std::filesystem::path(options.output).extension() == ".png")
     throw InvalidInput("--layers with " + options.output + ": must be left out, as only .exr keeps layers");
+  if (std::ranges::find(options.layers, gl::nameOf(gl::Layer::single)) != options.layers.end() &&
+      !tellsSingle(*modelNamed(options.model)))
+    throw InvalidInput("--layers single with --model " + options.model +
+                       ": must be left out, as that model does not tell light scattered once before apart");
   std::vector<gl::Layer> layers;
   for (const gl::Layer layer : gl::kLayersBesideTotal)
     if (std::ranges::find(options.layers, "all") != options.layers.end() ||
@@ -208,7 +212,8 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
       ->add_option(
           "--layers", render->layers,
           "Layers that an .exr holds beside the picture, by their names or all: direct, single, multiple, sky "
-          "(parts of the picture), geometry (normal, depth), foliage (leaves before and beyond, visible sun, G), "
+          "(parts of the picture: light scattered here alone, once before by ss, spp and sppg, all other, the sky's), "
+          "geometry (normal, depth), foliage (leaves before and beyond, visible sun, G), "
           "ids (tree, triangle, kind, leaf)")
       ->delimiter(',')
       ->check(CLI::IsMember(layerNames()));

@@ -11,6 +11,7 @@
 
 #include "apps/run_identity.hpp"
 #include "apps/trace_output.hpp"
+#include "core/csv_field.hpp"
 #include "core/elapsed.hpp"
 #include "core/require.hpp"
 #include "render/compare/exact_powers.hpp"
@@ -34,13 +35,6 @@ std::string textOf(const TraceIdentity& identity) {
   std::string text;
   for (const auto& [name, value] : identity) text += fmt::format("{}: {}\n", name, value);
   return text;
-}
-
-std::string csvField(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
 }
 
 template <typename T>

@@ -7,20 +7,19 @@ namespace {
 
 PixelRays raysOf(const gl::View& view, const glm::ivec2& size) {
   const Camera& camera = view.camera;
-  const Axes axes = viewAxes(camera);
-  const float pixel = 2.f * camera.half_width / static_cast<float>(camera.width);
-  const glm::vec2 low = glm::vec2(view.low) - 0.5f * glm::vec2(camera.width, camera.height);
-  PixelRays rays{.corner = camera.target + pixel * (low.x * axes.right + low.y * axes.up),
-                 .right_step = pixel * axes.right,
-                 .down_step = pixel * axes.up,  // rows from bottom to top
-                 .sight = axes.along,
+  const PixelSteps steps = pixelSteps(camera);
+  const glm::vec2 low(view.low);
+  PixelRays rays{.corner = steps.lower_left + low.x * steps.right + low.y * steps.up,
+                 .right_step = steps.right,
+                 .down_step = steps.up,  // rows from bottom to top
+                 .sight = viewAxes(camera).along,
                  .width = size.x,
                  .height = size.y,
                  .eye = std::nullopt};
-  if (camera.perspective()) {
+  if (camera.perspective())
     rays.eye = eyeOf(camera);
-    rays.corner -= *rays.eye;
-  }
+  else
+    rays.corner += camera.target;
   return rays;
 }
 

@@ -116,7 +116,6 @@ class FoliageStand {
   std::span<const glm::vec3> groundShare(std::size_t light) const { return ground_shares_[light]; }
 
   // Another number whenever the product is made anew; 0: not yet made.
-  std::uint64_t cellsRevision(std::size_t prototype) const { return graph_.revision(cells_, prototype); }
   std::uint64_t lightMapRevision(std::size_t prototype, std::size_t light) const {
     return graph_.revision(light_maps_, member(prototype, light));
   }

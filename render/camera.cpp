@@ -12,12 +12,6 @@ float halfHeight(const Camera& camera) {
   return camera.half_width * static_cast<float>(camera.height) / static_cast<float>(camera.width);
 }
 
-// From the eye to the target [m].
-float reach(const Camera& camera) {
-  assert(camera.perspective());
-  return camera.half_width / std::tan(0.5f * camera.field_of_view);
-}
-
 }  // namespace
 
 Axes viewAxes(const Camera& camera) {
@@ -26,24 +20,37 @@ Axes viewAxes(const Camera& camera) {
   return {.right = {-sa, ca, 0.f}, .up = {-se * ca, -se * sa, ce}, .along = {-ce * ca, -ce * sa, -se}};
 }
 
+float eyeDistance(const Camera& camera) {
+  assert(camera.perspective());
+  return camera.half_width / std::tan(0.5f * camera.field_of_view);
+}
+
 glm::vec3 eyeOf(const Camera& camera) {
-  return camera.target - reach(camera) * viewAxes(camera).along;
+  return camera.target - eyeDistance(camera) * viewAxes(camera).along;
+}
+
+PixelSteps pixelSteps(const Camera& camera) {
+  const Axes axes = viewAxes(camera);
+  const float pixel = 2.f * camera.half_width / static_cast<float>(camera.width);
+  const float ahead = camera.perspective() ? eyeDistance(camera) : 0.f;
+  return {.lower_left = ahead * axes.along - camera.half_width * axes.right - halfHeight(camera) * axes.up,
+          .right = pixel * axes.right,
+          .up = pixel * axes.up};
 }
 
 Sight sightThrough(const Camera& camera, const glm::vec2& place) {
-  const Axes axes = viewAxes(camera);
-  const float right = camera.half_width * (2.f * place.x / static_cast<float>(camera.width) - 1.f);
-  const float up = halfHeight(camera) * (1.f - 2.f * place.y / static_cast<float>(camera.height));
-  const glm::vec3 aside = right * axes.right + up * axes.up;
-  if (!camera.perspective()) return {.from = camera.target + aside, .along = axes.along};
-  return {.from = eyeOf(camera), .along = glm::normalize(reach(camera) * axes.along + aside)};
+  const PixelSteps steps = pixelSteps(camera);
+  const glm::vec3 aside =
+      steps.lower_left + place.x * steps.right + (static_cast<float>(camera.height) - place.y) * steps.up;
+  if (!camera.perspective()) return {.from = camera.target + aside, .along = viewAxes(camera).along};
+  return {.from = eyeOf(camera), .along = glm::normalize(aside)};
 }
 
 std::array<glm::vec4, 4> sidesOfSight(const Camera& camera) {
   const Axes axes = viewAxes(camera);
   const auto side = [&](const glm::vec3& outward, float half) {
     if (!camera.perspective()) return glm::vec4(-outward, half + glm::dot(outward, camera.target));
-    const glm::vec3 inward = glm::normalize(half * axes.along - reach(camera) * outward);
+    const glm::vec3 inward = glm::normalize(half * axes.along - eyeDistance(camera) * outward);
     return glm::vec4(inward, -glm::dot(inward, eyeOf(camera)));
   };
   const float half_height = halfHeight(camera);

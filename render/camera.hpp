@@ -29,8 +29,16 @@ inline constexpr Camera kOverview{.elevation = 0.1745f, .azimuth = 0.3491f};
 // eye, so that these axes are left-handed: right x up = -along.
 Axes viewAxes(const Camera& camera);
 
-// Of a camera in perspective: where its eye is [m].
+// Of a camera in perspective: from its eye to the target, and where its eye is [m].
+float eyeDistance(const Camera& camera);
 glm::vec3 eyeOf(const Camera& camera);
+
+// The picture in the plane through the target that faces the camera [m].
+struct PixelSteps {
+  glm::vec3 lower_left;  // of the picture, from the eye, or for parallel lines of sight from the target
+  glm::vec3 right, up;   // from a pixel to the next
+};
+PixelSteps pixelSteps(const Camera& camera);
 
 // A line of sight.
 struct Sight {

@@ -36,4 +36,8 @@ bool needsCompensation(Model model) {
   return model != Model::ss && model != Model::spp;
 }
 
+bool tellsSingle(Model model) {
+  return model == Model::ss || model == Model::spp || model == Model::sppg;
+}
+
 }  // namespace sunfleck

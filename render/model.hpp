@@ -21,5 +21,6 @@ std::string nameOf(Model model);  // "ss", "spp" ...
 std::optional<Model> modelNamed(std::string_view name);
 std::string modelNames();             // "ss, spp ...", for people
 bool needsCompensation(Model model);  // whether it asks for G
+bool tellsSingle(Model model);        // whether it tells light that was scattered once before apart (R35)
 
 }  // namespace sunfleck

@@ -308,6 +308,12 @@ std::optional<Scene> builtin(const std::string& name) {
 
 }  // namespace
 
+TreeKind grownKind(const std::string& species_name, std::uint64_t seed) {
+  TreeKind kind;
+  growTree(kind, species_name, seed);
+  return kind;
+}
+
 glm::vec2 touchingPeriod(const Scene& scene) {
   glm::vec2 period(0.f);
   for (const TreeKind& kind : scene.kinds) {

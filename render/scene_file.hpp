@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -12,6 +13,9 @@ namespace sunfleck {
 // `rules` says how a mesh file that is the scene itself is read; a TOML file brings its own. Throws InvalidInput with
 // file, line and key on anything that is wrong.
 Scene readScene(const std::string& name_or_file, const ImportRules& rules = {});
+
+// A kind of trees of a species, named after it. Throws InvalidInput on a species that is not known.
+TreeKind grownKind(const std::string& species_name, std::uint64_t seed);
 
 // Names that readScene() knows without a file.
 std::vector<std::string> builtinScenes();

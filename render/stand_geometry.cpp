@@ -358,9 +358,6 @@ std::span<const glm::vec3> StandGeometry::skyLight(std::size_t tree) const {
   return of_instances_[trees_.instance(tree)].environment.values;
 }
 
-std::uint64_t StandGeometry::cellsRevision(std::size_t kind) const {
-  return kinds_[kind].stands ? foliage_->cellsRevision(of_kinds_[kind].prototype) : 0;
-}
 std::uint64_t StandGeometry::lightRevision(std::size_t kind, std::size_t light) const {
   return kinds_[kind].stands ? foliage_->lightMapRevision(of_kinds_[kind].prototype, light) : 0;
 }

@@ -102,10 +102,8 @@ class StandGeometry {
   std::span<const glm::vec3> skyLight(std::size_t tree) const;
 
   const GroundSky& groundSky() const { return ground_sky_; }
-  glm::vec3 groundRadiance() const { return ground_radiance_; }  // of the ground among the trees, in the mean [1/sr]
 
   // Another number whenever the content is another, in whichever StandGeometry; 0: there is none.
-  std::uint64_t cellsRevision(std::size_t kind) const;
   std::uint64_t lightRevision(std::size_t kind, std::size_t light) const;
   std::uint64_t compensationRevision(std::size_t tree, std::size_t light) const;
   std::uint64_t skyLightRevision(std::size_t tree) const;

@@ -96,6 +96,15 @@ SHARED_FN SlabPowers sppPowers(Number depth, Number thickness, Number mu0, Numbe
   return sppPowersOf(sppConstants(mu0, albedo, forward_share), depth, thickness);
 }
 
+// (R35) Of SPP's diffuse powers with mu0 = 1 those of light that was scattered once.
+SHARED_FN SlabPowers sppScatteredOnce(SHARED_IN(SppConstants) leaves, Number depth, Number thickness) {
+  Number direct = directPower(depth, Number(1.0f));
+  SlabPowers once;
+  once.down = (Number(1.0f) - leaves.loss) * depth * direct;
+  once.up = leaves.backward * direct * decayIntegral(Number(2.0f), max(thickness - depth, Number(0.0f)));
+  return once;
+}
+
 // (S3) Diffuse radiance of SPP, the same for all directions of a half: forward half, then backward half  [1/sr].
 SHARED_FN SlabPowers sppDiffuseRadiance(SlabPowers powers, Number direct) {
   Number per_steradian = Number(0.15915494309189535f);  // 1 / 2 pi

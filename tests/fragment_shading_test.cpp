@@ -112,8 +112,8 @@ TEST(R26_GlossTables, SendLightOfHalfTheSphereAsTracedLeavesDo) {
       const auto [normal, to_eye] = drawnView(random);
       const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, to_eye), kFullLight, 0);
       const double expected = traced.sentFromHalf(normal, to_eye, -travel, 160);
-      EXPECT_NEAR(shaded.multiple[0], expected, 0.045) << "roughness " << roughness << ", line of sight " << i;
-      squares += std::pow(double{shaded.multiple[0]} - expected, 2);
+      EXPECT_NEAR(shaded.scattered[0], expected, 0.045) << "roughness " << roughness << ", line of sight " << i;
+      squares += std::pow(double{shaded.scattered[0]} - expected, 2);
     }
     EXPECT_LT(std::sqrt(squares / kViews), 0.009) << "roughness " << roughness;
   }
@@ -135,7 +135,7 @@ TEST(R20_FragmentShading, SendsDirectLightAsTracedLeavesDo) {
     const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, to_eye), kFullLight, 0);
     const double expected = traced.sent(normal, to_eye, -travel);
     EXPECT_NEAR(shaded.direct[0], expected, 1e-4 * (1. + expected)) << i;
-    EXPECT_EQ(shaded.multiple[0], 0.f);
+    EXPECT_EQ(shaded.scattered[0], 0.f);
   }
 }
 
@@ -149,8 +149,8 @@ TEST(R26_GlossTables, CountAllLightOnce) {
     for (int i = 0; i < 1000; ++i) {
       const auto [normal, to_eye] = drawnView(random);
       const Surface surface = shading.leafSurface(0, 0, 0, normal, to_eye);
-      EXPECT_NEAR(shading.shadeByLight(surface, kFullLight, 0).multiple[0], 1.f, 1e-5f);
-      EXPECT_NEAR(shading.shadeBySky(surface, glm::vec3(1.f)).multiple[0], 1.f, 1e-5f);
+      EXPECT_NEAR(shading.shadeByLight(surface, kFullLight, 0).scattered[0], 1.f, 1e-5f);
+      EXPECT_NEAR(shading.shadeBySky(surface, glm::vec3(1.f)).scattered[0], 1.f, 1e-5f);
     }
   }
 }
@@ -170,12 +170,42 @@ TEST(R27_FragmentShading, ByStreamsIsThatOfTheSlab) {
       const double down = double{g} * (light.power_down - light.direct), up = double{g} * light.power_up;
       const FragmentLight at{.foliage = {depth, thickness - depth, 0.f}, .thickness = thickness, .compensation = g};
       const auto sent = [&](const glm::vec3& normal) {
-        return double{shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, normal), at, 0).multiple[0]};
+        return double{shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, normal), at, 0).scattered[0]};
       };
       constexpr double kPi = std::numbers::pi;
       EXPECT_NEAR(sent({0.f, 0.f, 1.f}), (0.6 * down + 0.3 * up) / (2. * kPi), 3e-4);
       EXPECT_NEAR(sent({0.f, 0.f, -1.f}), (0.6 * up + 0.3 * down) / (2. * kPi), 3e-4);
       EXPECT_NEAR(sent({1.f, 0.f, 0.f}), 0.9 * (down + up) / (4. * kPi), 3e-4);
+    }
+}
+
+// (R35) Check light that was scattered once before against the slab of leaves that scatter next to nothing, of whose
+// light hardly any is scattered more often: their powers by their albedo differ from the limit by one scattering more,
+// which at most z + 1 times 1e-7 of it are, and by a double's roundings over the albedo, 1e-9. That model's radiances
+// are floats.
+TEST(R35_FragmentShading, TellsLightScatteredOnceBefore) {
+  const LeafOptics leaf{.reflectance = 0.55f, .transmittance = 0.35f};
+  TreeKind kind;
+  kind.leaf.fill(leaf);
+  ShadingData data;
+  update(data, Model::sppg, std::array{kind}, std::array{sunAlong(kDown)});
+  const FragmentShading shading(Model::sppg, data);
+  constexpr double kFaint = 1e-7;
+  const double forward = double{spp::sphericalLeafForwardShare(leaf.reflectance, leaf.transmittance)};
+  for (const float thickness : {0.5f, 4.f, 30.f})
+    for (const float part : {0.f, 0.3f, 1.f}) {
+      const float depth = part * thickness, g = 0.7f;
+      const auto faint = spp::precise::sppPowers(double{depth}, double{thickness}, 1., kFaint, forward);
+      const double scale = double{g} * double{leaf.albedo()} / kFaint;
+      const double down = scale * (faint.down - std::exp(-double{depth})), up = scale * faint.up;
+      const FragmentLight at{.foliage = {depth, thickness - depth, 0.f}, .thickness = thickness, .compensation = g};
+      for (const glm::vec3 normal : {glm::vec3(0.f, 0.f, 1.f), glm::vec3(0.f, 0.f, -1.f), glm::vec3(0.6f, 0.f, 0.8f)}) {
+        const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, normal), at, 0);
+        const double expected = spp::precise::lambertRadiance(spp::precise::halvesOnSides(double{normal.z}, {down, up}),
+                                                              double{leaf.reflectance}, double{leaf.transmittance});
+        EXPECT_NEAR(double{shaded.single[1]}, expected, 1e-6) << thickness << " " << part;
+        EXPECT_LE(shaded.single[1], shaded.scattered[1] + 1e-6f);
+      }
     }
 }
 

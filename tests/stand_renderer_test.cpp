@@ -112,12 +112,13 @@ TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
         kinds.insert(value(image, x, y, "id.kind"));
         for (const std::string band : {"R", "G", "B"}) {
           float sum = 0.f;
-          for (const std::string part : {"direct.", "single.", "multiple.", "sky."})
-            sum += value(image, x, y, part + band);
+          for (const std::string part : {"direct.", "multiple.", "sky."}) sum += value(image, x, y, part + band);
+          if (tellsSingle(model)) sum += value(image, x, y, "single." + band);
           ASSERT_NEAR(value(image, x, y, band), sum, 1e-6f);
         }
       }
     EXPECT_EQ(trees.size(), 6u);  // five trees and none
+    EXPECT_EQ(std::ranges::count(image.channels, "single.R"), tellsSingle(model) ? 1 : 0);
     EXPECT_EQ(kinds, (std::set<float>{-1.f, 0.f, 1.f}));
   }
 }
@@ -158,8 +159,10 @@ TEST(R27_StandRenderer, ShadesAsCppDoes) {
           const std::string name = bands[static_cast<std::size_t>(band)];
           ASSERT_NEAR(at(("direct." + name).c_str()), shaded.direct[band],
                       kShading * (1.f + 10.f * shaded.direct[band]));
-          ASSERT_NEAR(at(("multiple." + name).c_str()), shaded.multiple[band],
-                      kShading * (1.f + shaded.multiple[band]));
+          ASSERT_NEAR(at(("multiple." + name).c_str()), shaded.scattered[band] - shaded.single[band],
+                      kShading * (1.f + shaded.scattered[band]));
+          if (tellsSingle(model))
+            ASSERT_NEAR(at(("single." + name).c_str()), shaded.single[band], kShading * (1.f + shaded.single[band]));
         }
       }
     EXPECT_GT(leaves, 1000);
@@ -263,6 +266,31 @@ TEST(R3_StandRenderer, LightsTheGroundByTreesBesideThePicture) {
       least = std::min(least, value(all, x, y, "foliage.G"));
     }
   EXPECT_LT(least, 0.95f);
+}
+
+// (R24) Check that no pixel but those of the empty sky is left out of shading: a black sky, under which all are shaded,
+// changes nothing where there is no ground; from afar, from within the stand, in parts, and of samples in sum.
+TEST(R24_StandRenderer, LeavesOutNothingButTheSky) {
+  Woods woods;
+  woods.scene.ground_albedo = glm::vec3(0.f);
+  woods.scene.sky = {};
+  Drawing without(woods.stand());
+  woods.scene.sky.kind = SceneSky::Kind::uniform;
+  woods.scene.sky.irradiance = glm::dvec3(0.);
+  Drawing with(woods.stand());
+  Camera aside = woods.camera(64), within = inPerspective(woods.camera(64));
+  aside.half_width *= 3.f;
+  within.half_width *= 0.1f;
+  for (const Camera& camera : {woods.camera(64), inPerspective(woods.camera(64)), aside, within}) {
+    const gl::PictureEffort effort{.samples = 2, .layers = kAll};
+    const Image some = without.picture(camera, effort), all = with.picture(camera, effort);
+    ASSERT_EQ(some.values.size(), all.values.size());
+    for (std::size_t i = 0; i < all.values.size(); ++i)
+      // (infinite depths are equal)
+      ASSERT_TRUE(some.values[i] == all.values[i] ||
+                  std::abs(some.values[i] - all.values[i]) <= kShading * (1.f + std::abs(all.values[i])))
+          << i;
+  }
 }
 
 // (R25) Check that with fewer and larger leaves the mean radiance and coverage stay within a few parts in a hundred,

@@ -39,13 +39,13 @@ struct Input {
   vec4 albedo;   // of the ground; w: light
 };
 struct Output {
-  vec4 direct, single, multiple, sky;
+  vec4 direct, single, scattered, sky;
 };
 
 constexpr const char* kMain = R"(
   layout(local_size_x = 64) in;
   struct Input { vec4 normal, to_eye, foliage, sky, albedo; };
-  struct Output { vec4 direct, single, multiple, sky; };
+  struct Output { vec4 direct, single, scattered, sky; };
   layout(std430, binding = 0) readonly buffer Inputs { Input inputs[]; };
   layout(std430, binding = 1) writeonly buffer Outputs { Output outputs[]; };
   void main() {
@@ -59,8 +59,8 @@ constexpr const char* kMain = R"(
     Foliage foliage = Foliage(x.foliage.x, x.foliage.y, x.foliage.z);
     Shaded by_light = shadeByLight(surface, foliage, x.foliage.w, x.sky.w, uint(x.albedo.w));
     Shaded by_sky = shadeBySky(surface, x.sky.xyz);
-    outputs[i] = Output(vec4(by_light.direct, 0.0), vec4(by_light.single, 0.0), vec4(by_light.multiple, 0.0),
-                        vec4(by_sky.direct + by_sky.single + by_sky.multiple, 0.0));
+    outputs[i] = Output(vec4(by_light.direct, 0.0), vec4(by_light.single, 0.0), vec4(by_light.scattered, 0.0),
+                        vec4(by_sky.direct + by_sky.scattered, 0.0));
   })";
 
 std::vector<Output> shadedOnGpu(Model model, const ShadingData& data, const std::vector<Input>& inputs) {
@@ -97,8 +97,8 @@ std::vector<Output> shadedInCpp(Model model, const ShadingData& data, const std:
         .foliage = {x.foliage.x, x.foliage.y, x.foliage.z}, .thickness = x.foliage.w, .compensation = x.sky.w};
     const Shaded by_light = shading.shadeByLight(surface, at, static_cast<uint>(x.albedo.w));
     const Shaded by_sky = shading.shadeBySky(surface, vec3(x.sky));
-    outputs.push_back({vec4(by_light.direct, 0.f), vec4(by_light.single, 0.f), vec4(by_light.multiple, 0.f),
-                       vec4(by_sky.direct + by_sky.single + by_sky.multiple, 0.f)});
+    outputs.push_back({vec4(by_light.direct, 0.f), vec4(by_light.single, 0.f), vec4(by_light.scattered, 0.f),
+                       vec4(by_sky.direct + by_sky.scattered, 0.f)});
   }
   return outputs;
 }
@@ -173,14 +173,14 @@ TEST_P(SurfaceShading, OfTheGpuIsThatOfCpp) {
   const std::vector<Output> gpu = shadedOnGpu(GetParam(), data, inputs), cpp = shadedInCpp(GetParam(), data, inputs);
   float worst = 0.f, brightest = 0.f;
   for (std::size_t i = 0; i < inputs.size(); ++i)
-    for (const auto part : {&Output::direct, &Output::single, &Output::multiple, &Output::sky})
+    for (const auto part : {&Output::direct, &Output::single, &Output::scattered, &Output::sky})
       for (int band = 0; band < 3; ++band) {
         const float found = (gpu[i].*part)[band], expected = (cpp[i].*part)[band];
         ASSERT_TRUE(std::isfinite(expected));
         ASSERT_GE(expected, 0.f);
         ASSERT_NEAR(found, expected, 3e-6f + 3e-6f * expected) << "fragment " << i << " band " << band;
         worst = std::max(worst, std::abs(found - expected));
-        brightest = std::max(brightest, part == &Output::multiple ? expected : 0.f);
+        brightest = std::max(brightest, part == &Output::scattered ? expected : 0.f);
       }
   EXPECT_EQ(brightest > 0.1f, GetParam() != Model::ss);  // there was something to compare
   std::ostringstream largest;

@@ -15,11 +15,6 @@ float metresPerPixel(const Camera& camera) {
   return 2.f * camera.half_width / static_cast<float>(camera.width);
 }
 
-// From the eye to the target [m].
-float reach(const Camera& camera) {
-  return camera.half_width / std::tan(0.5f * camera.field_of_view);
-}
-
 void turn(Camera& camera, float azimuth, float elevation) {
   camera.azimuth = std::remainder(camera.azimuth + azimuth, kFullTurn);
   camera.elevation = std::clamp(camera.elevation + elevation, -kSteepest, kSteepest);
@@ -61,7 +56,7 @@ Camera lookedAround(Camera camera, float azimuth, float elevation) {
   if (!camera.perspective()) camera = inPerspective(camera, kWideView);
   const glm::vec3 eye = eyeOf(camera);
   turn(camera, azimuth, elevation);
-  camera.target = eye + reach(camera) * viewAxes(camera).along;
+  camera.target = eye + eyeDistance(camera) * viewAxes(camera).along;
   return camera;
 }
 
@@ -94,9 +89,9 @@ std::optional<glm::vec2> pixelOf(const Camera& camera, const glm::vec3& point) {
   const glm::vec3 away = point - camera.target;
   float pixels = 1.f / metresPerPixel(camera);
   if (camera.perspective()) {
-    const float depth = reach(camera) + glm::dot(away, axes.along);
-    if (depth <= 1e-3f * reach(camera)) return std::nullopt;
-    pixels *= reach(camera) / depth;
+    const float depth = eyeDistance(camera) + glm::dot(away, axes.along);
+    if (depth <= 1e-3f * eyeDistance(camera)) return std::nullopt;
+    pixels *= eyeDistance(camera) / depth;
   }
   return 0.5f * glm::vec2(camera.width, camera.height) +
          pixels * glm::vec2(glm::dot(away, axes.right), -glm::dot(away, axes.up));

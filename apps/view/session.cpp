@@ -10,8 +10,6 @@
 
 #include "core/random.hpp"
 #include "core/require.hpp"
-#include "plants/species.hpp"
-#include "plants/weber_penn.hpp"
 #include "render/scene_file.hpp"
 #include "sky/solar_position.hpp"
 
@@ -21,12 +19,7 @@ namespace {
 
 TreeKind readKind(const std::string& species_or_file, std::uint64_t seed) {
   if (std::filesystem::path(species_or_file).has_extension()) return readScene(species_or_file).kinds.front();
-  TreeKind kind;
-  kind.name = species_or_file;
-  kind.source = fmt::format("species {}, seed {}", species_or_file, seed);
-  kind.recipe = {.species = species_or_file, .seed = seed, .file = {}, .rules = {}};
-  kind.mesh = std::make_shared<const TreeMesh>(grow(species(species_or_file), seed));
-  return kind;
+  return grownKind(species_or_file, seed);
 }
 
 }  // namespace

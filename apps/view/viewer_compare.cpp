@@ -92,7 +92,7 @@ void Viewer::compare() {
   const Elapsed looking;
   const Image of_a = imageOf(a_), of_b = look.other ? imageOf(b_) : reference_.radiance;
   report_.error = pictureError(of_a, of_b, look.other ? nullptr : &reference_.standard_error);
-  std::vector<float> differences = differencePicture(of_a, of_b, Difference::absolute).values;
+  std::vector<float> differences = differencePicture(of_a, of_b).values;
   const auto rank =
       differences.begin() + static_cast<std::ptrdiff_t>(kShareInScale * static_cast<double>(differences.size() - 1));
   std::nth_element(differences.begin(), rank, differences.end());

@@ -31,7 +31,6 @@ class Offscreen final : public Window {
   void minimise() override { minimised_ = true; }
   void restore() override { minimised_ = false; }
   float scale() const override { return 1.f; }
-  void title(const std::string&) override {}
 
  private:
   glm::ivec2 size_;

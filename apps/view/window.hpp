@@ -49,7 +49,6 @@ class Window {
   virtual void minimise() = 0;
   virtual void restore() = 0;
   virtual float scale() const = 0;  // of letters, by the display's setting
-  virtual void title(const std::string& title) = 0;
 };
 
 // A window on the display. Throws std::runtime_error that names what is needed: a display, OpenGL 4.5, the library.

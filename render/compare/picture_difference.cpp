@@ -12,7 +12,6 @@ namespace sunfleck {
 namespace {
 
 constexpr std::size_t kColours = 3;
-constexpr double kLeastReference = 0.05;  // of a relative difference, as a share of the reference's mean
 
 void requireAlike(const Image& picture, const Image& reference) {
   const auto coloured = [](const Image& image) {
@@ -68,24 +67,14 @@ PictureError pictureError(const Image& picture, const Image& reference, const Im
   return error;
 }
 
-Image differencePicture(const Image& picture, const Image& reference, Difference kind) {
+Image differencePicture(const Image& picture, const Image& reference) {
   requireAlike(picture, reference);
-  double sum = 0., covered = 0.;
-  forPixels(picture, [&](std::size_t pixel, double coverage) {
-    for (std::size_t band = 0; band < kColours; ++band) sum += coverage * valueOf(reference, pixel, band) / kColours;
-    covered += coverage;
-  });
-  const double least = covered > 0. ? kLeastReference * sum / covered : 0.;
   Image difference{.width = picture.width, .height = picture.height, .channels = {"Y"}, .values = {}};
   forPixels(picture, [&](std::size_t pixel, double coverage) {
-    double squares = 0., there = 0.;
-    for (std::size_t band = 0; band < kColours; ++band) {
+    double squares = 0.;
+    for (std::size_t band = 0; band < kColours; ++band)
       squares += std::pow(valueOf(picture, pixel, band) - valueOf(reference, pixel, band), 2) / kColours;
-      there += valueOf(reference, pixel, band) / kColours;
-    }
-    double value = coverage > 0. ? std::sqrt(squares) : 0.;
-    if (kind == Difference::relative && value > 0.) value = least > 0. ? value / std::max(there, least) : 0.;
-    difference.values.push_back(static_cast<float>(value));
+    difference.values.push_back(coverage > 0. ? static_cast<float>(std::sqrt(squares)) : 0.f);
   });
   return difference;
 }

@@ -18,10 +18,9 @@ struct PictureError {
 // has any. Throws std::invalid_argument on pictures of different sizes or other channels.
 PictureError pictureError(const Image& picture, const Image& reference, const Image* standard_error = nullptr);
 
-// Channel Y: the difference of each pixel, root mean square over the bands [1/sr], 0 where the picture covers nothing;
-// or relative to the reference there, which counts as a twentieth of its mean at least [1]. Throws as above.
-enum class Difference { absolute, relative };
-Image differencePicture(const Image& picture, const Image& reference, Difference kind);
+// Channel Y: the difference of each pixel, root mean square over the bands [1/sr], 0 where the picture covers nothing.
+// Throws as above.
+Image differencePicture(const Image& picture, const Image& reference);
 
 // A picture of channel Y in false colours from 0 to `high`, as light that a PNG of exposure 1 shows.
 Image inFalseColours(const Image& values, float high);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/csv_field.hpp"
+
 namespace sunfleck {
 namespace {
 
@@ -39,7 +41,7 @@ Image pictureSheet(const Image& reference, const std::vector<ComparedPicture>& p
   const int columns = static_cast<int>(pictures.size()) + 1;
   std::vector<Image> differences;
   for (const ComparedPicture& of : pictures)
-    differences.push_back(differencePicture(of.picture, reference, Difference::absolute));
+    differences.push_back(differencePicture(of.picture, reference));
   const float high = differences.empty() ? 0.f : largestShown(differences.front());
   Image last;
   if (!differences.empty()) last = withColourBar(inFalseColours(differences.back(), high), high, false);

@@ -19,9 +19,11 @@ layout(std140, binding = 0) uniform Frame {
   vec4 ground_cells;  // xy: corner of the cells in which the ground's skylight is told [m]; zw: 1 / extent [1/m]
   vec4 ground_open;   // rgb: irradiance of open ground by the sky [1]; w: 1 where cells are told
   vec4 cell_part;     // xyz: 1 / cells of the texture that holds those of all trees
-  uvec4 counts;       // x: lights; y, z: rows and columns of the sky, 0: none; w: light told in layers
+  uvec4 counts;       // x: lights; y, z: rows and columns of the sky, 0: none
   LightFrame light_frames[4];
 };
+
+bool hasSky() { return counts.y > 0u; }
 
 // What is the same for all pixels, and compilers then know: LIGHTS where there is one light, ONE_KIND, NO_SKY.
 #ifndef LIGHTS

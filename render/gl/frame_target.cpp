@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -103,13 +104,30 @@ glm::uvec2 FrameTarget::visibleAt(glm::ivec2 pixel) const {
   return id;
 }
 
-void FrameTarget::beginShading(bool accumulate) {
+void FrameTarget::clearLayers() const {
+  constexpr std::array<GLfloat, 4> none{}, far{0.f, 0.f, 0.f, std::numeric_limits<float>::infinity()};
+  constexpr std::array<GLuint, 4> no_ids{detail::kNone, detail::kNone, detail::kNone, detail::kNone};
+  for (GLint layer = 0; layer < static_cast<GLint>(textures_.size()); ++layer)
+    if (layer == static_cast<GLint>(Layer::ids))
+      glClearNamedFramebufferuiv(shading_target_.get(), GL_COLOR, layer, no_ids.data());
+    else
+      glClearNamedFramebufferfv(shading_target_.get(), GL_COLOR, layer,
+                                layer == static_cast<GLint>(Layer::geometry) ? far.data() : none.data());
+}
+
+void FrameTarget::beginShading(bool accumulate, const PixelBox& shown) {
   samples_ = accumulate ? samples_ + 1 : 1;
   glBindFramebuffer(GL_FRAMEBUFFER, shading_target_.get());
   glViewport(0, 0, size_.x, size_.y);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
+  const bool whole = shown == PixelBox{.low = glm::ivec2(0), .high = size_};
+  if (!whole && !accumulate) clearLayers();
+  if (!whole) {
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(shown.low.x, shown.low.y, shown.high.x - shown.low.x, shown.high.y - shown.low.y);
+  }
   glBlendEquation(GL_FUNC_ADD);
   glBlendFunc(GL_ONE, GL_ONE);
   for (GLuint layer = 0; layer < textures_.size(); ++layer)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/gl/object_name.hpp"
+#include "render/gl/view.hpp"
 
 namespace sunfleck::gl {
 
@@ -21,7 +22,7 @@ enum class Layer {
   sky,       // of the sky's light, scattered or seen behind all
   geometry,  // normal towards the eye, and distance from the eye or the target's plane along the middle line of sight
              // [m]
-  foliage,   // n+, n-, visible share of the light, G (see View::layer_light)
+  foliage,   // n+, n-, visible share of the first light, G
   ids,       // drawn tree or kGround or kNone, its triangle, its kind, its leaf; bits of whole numbers
 };
 inline constexpr int kLayers = 8;
@@ -51,8 +52,8 @@ class FrameTarget {
   void beginVisible() const;
   void setVisible(std::span<const glm::uvec2> ids);
   unsigned visible() const { return visible_.get(); }
-  // Radiances are added to where `accumulate` is set.
-  void beginShading(bool accumulate);
+  // Radiances are added to where `accumulate` is set. Pixels beyond `shown` show nothing and are not drawn.
+  void beginShading(bool accumulate, const PixelBox& shown);
 
  private:
   static void destroyFramebuffer(unsigned name);
@@ -61,6 +62,8 @@ class FrameTarget {
   using Texture = ObjectName<&FrameTarget::destroyTexture>;
   using Framebuffer = ObjectName<&FrameTarget::destroyFramebuffer>;
   static Texture texture(unsigned format, glm::ivec2 size);
+
+  void clearLayers() const;
 
   glm::ivec2 size_;
   int samples_ = 0;

@@ -19,7 +19,7 @@ layout(location = 2) out vec4 single;
 layout(location = 3) out vec4 multiple;
 layout(location = 4) out vec4 of_sky;
 layout(location = 5) out vec4 geometry;  // xyz: normal; w: distance along the middle line of sight [m]
-layout(location = 6) out vec4 foliage_of_light;  // n+, n-, visible, G
+layout(location = 6) out vec4 foliage_of_light;  // n+, n-, visible, G of the first light
 layout(location = 7) out uvec4 ids;              // drawn tree, triangle, kind, leaf
 #endif
 
@@ -77,7 +77,7 @@ Place placeOnGround(Sight look) {
   Place place;
   place.away = (ground.z - look.from.z) / look.along.z;
   vec3 there = look.from + place.away * look.along;
-  float from_centre = counts.y > 0u ? 0.0 : distance(there.xy, ground.xy) / ground.w;
+  float from_centre = hasSky() ? 0.0 : distance(there.xy, ground.xy) / ground.w;
   bool seen = ground_albedo.w > 0.0 && look.along.z < 0.0 && from_centre < 1.0 && (eye.w == 0.0 || place.away > 0.0);
   place.coverage = seen ? 1.0 - smoothstep(0.6, 1.0, from_centre) : 0.0;
   place.lit = seen ? there : ground.xyz;
@@ -100,7 +100,7 @@ vec3 skyOnGround(vec2 here) {
 }
 
 vec3 skyTowards(vec3 to_sky) {
-  if (counts.y == 0u || to_sky.z <= 0.0) return vec3(0.0);
+  if (!hasSky() || to_sky.z <= 0.0) return vec3(0.0);
   vec2 rows_columns = vec2(counts.yz);
   float row = acos(min(to_sky.z, 1.0)) / (0.5 * kPi) * rows_columns.x;
   float turn = (atan(to_sky.y, to_sky.x) - sky_azimuth.x) / (2.0 * kPi);
@@ -139,20 +139,20 @@ void main() {
     float thickness = foliage.before + foliage.beyond + (place.is_leaf ? 1.0 : 0.0);
     Shaded shaded = shadeByLight(place.surface, foliage, thickness, compensation, light);
     sum.direct += shaded.direct;
+    sum.scattered += shaded.scattered;
     sum.single += shaded.single;
-    sum.multiple += shaded.multiple;
-    if (light == counts.w) of_light = vec4(foliage.before, foliage.beyond, foliage.visible, compensation);
+    if (light == 0u) of_light = vec4(foliage.before, foliage.beyond, foliage.visible, compensation);
   }
   vec3 sky_sum = vec3(0.0), behind = vec3(0.0);
 #ifndef NO_SKY
-  vec3 sky = counts.y > 0u ? skyOnGround(place.lit.xy) : vec3(0.0);
+  vec3 sky = hasSky() ? skyOnGround(place.lit.xy) : vec3(0.0);
   if (of_tree) sky = skyLightAt(place.lit, tree);
   Shaded by_sky = shadeBySky(place.surface, sky);
-  sky_sum = by_sky.direct + by_sky.single + by_sky.multiple;
+  sky_sum = by_sky.direct + by_sky.scattered;
   behind = skyTowards(look.along);
 #endif
   float coverage = place.coverage;
-  vec3 seen = sum.direct + sum.single + sum.multiple + sky_sum;
+  vec3 seen = sum.direct + sum.scattered + sky_sum;
   total = coverage > 0.0 ? vec4(coverage * seen + (1.0 - coverage) * behind, coverage) : vec4(behind, 0.0);
 #ifdef LAYERS
   bool nothing = coverage == 0.0;
@@ -162,7 +162,7 @@ void main() {
   ids = of_tree ? uvec4(id, tree.kind, place.surface.leaf) : uvec4(nothing ? kNone : kGround, kNone, kNone, kNoLeaf);
   direct = nothing ? vec4(0.0) : vec4(coverage * sum.direct, coverage);
   single = nothing ? vec4(0.0) : vec4(coverage * sum.single, coverage);
-  multiple = nothing ? vec4(0.0) : vec4(coverage * sum.multiple, coverage);
+  multiple = nothing ? vec4(0.0) : vec4(coverage * max(sum.scattered - sum.single, 0.0), coverage);
   of_sky = nothing ? vec4(behind, 0.0) : vec4(coverage * sky_sum + (1.0 - coverage) * behind, coverage);
 #endif
 }

@@ -1,6 +1,6 @@
 // (R3, R27) What surfaces send to the eye: the text shared with C++ and where it reads. It comes after prelude.glsl,
-// spp_formulas.glsl and foliage.glsl. MODEL is the file of the model asked for (shading_program.hpp), which is one more
-// part of the program: what changes with the model changes nothing else.
+// spp_formulas.glsl and foliage.glsl. MODEL is the file of the model asked for (render/shading/shading_model.hpp), which
+// is one more part of the program: what changes with the model changes nothing else.
 #include "spp/power_table.glsl"
 #include "scattering/gloss_formulas.glsl"
 #include "render/shading/surface_types.glsl"

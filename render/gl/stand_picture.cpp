@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -83,7 +84,8 @@ PictureByFrames::PictureByFrames(const Context& context, StandRenderer& renderer
       image_{.width = camera.width, .height = camera.height, .channels = {}, .values = {}},
       layers_{Layer::total} {
   requireDrawable(camera);
-  layers_.insert(layers_.end(), effort_.layers.begin(), effort_.layers.end());
+  std::ranges::copy_if(effort_.layers, std::back_inserter(layers_),
+                       [&](Layer layer) { return layer != Layer::single || tellsSingle(effort_.model); });
   for (const Layer layer : layers_) {
     first_channel_.push_back(image_.channels.size());
     const auto& names = namesOf(layer).channels;

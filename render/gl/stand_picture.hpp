@@ -19,7 +19,7 @@ struct PictureEffort {
   Model model = Model::sppg;
   int samples = 4;            // for each pixel, > 0
   float piece_pixels = 0.f;   // see View
-  std::vector<Layer> layers;  // beside the total
+  std::vector<Layer> layers;  // beside the total; single is left out where the model does not tell it
   spp::PowerTableOf exact;    // see StandRenderer
   // Finds what is seen in a view into a target of that size, as StandRenderer::draw() is told; none: it is drawn.
   std::function<std::vector<glm::uvec2>(const View& view, const glm::ivec2& size)> visible{};

@@ -118,22 +118,14 @@ float StandRenderer::reach(const View& view) const {
 
 void StandRenderer::bindFrame(const View& view, const FrameTarget& target) {
   const Camera& camera = view.camera;
-  const Axes axes = viewAxes(camera);
-  const float pixel = 2.f * camera.half_width / static_cast<float>(camera.width);
-  const glm::vec2 half(camera.half_width, 0.5f * pixel * static_cast<float>(camera.height));
-  glm::vec3 corner = -half.x * axes.right - half.y * axes.up;
+  const PixelSteps steps = pixelSteps(camera);
   FrameData frame = data_.frame();
   frame.clip_from_world = clipFromWorld(view, target.size(), reach(view));
-  frame.eye = glm::vec4(camera.target, 0.f);
-  if (camera.perspective()) {
-    frame.eye = glm::vec4(eyeOf(camera), 1.f);
-    corner += camera.target - eyeOf(camera);
-  }
-  frame.sight = glm::vec4(axes.along, 0.f);
-  frame.corner = glm::vec4(corner, 0.f);
-  frame.pixel_right = glm::vec4(pixel * axes.right, static_cast<float>(view.low.x) + view.offset.x);
-  frame.pixel_up = glm::vec4(pixel * axes.up, static_cast<float>(view.low.y) + view.offset.y);
-  frame.counts.w = view.layer_light;
+  frame.eye = camera.perspective() ? glm::vec4(eyeOf(camera), 1.f) : glm::vec4(camera.target, 0.f);
+  frame.sight = glm::vec4(viewAxes(camera).along, 0.f);
+  frame.corner = glm::vec4(steps.lower_left, 0.f);
+  frame.pixel_right = glm::vec4(steps.right, static_cast<float>(view.low.x) + view.offset.x);
+  frame.pixel_up = glm::vec4(steps.up, static_cast<float>(view.low.y) + view.offset.y);
   frame_.write(0, std::as_bytes(std::span(&frame, 1)));
   frame_.bindUniform(0);
 }
@@ -172,7 +164,7 @@ std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const 
     const glm::vec3 there = look.from + away * look.along;
     const bool seen = data_.frame().ground_albedo.w > 0.f && look.along.z < 0.f &&
                       (away > 0.f || !view.camera.perspective()) &&
-                      (data_.frame().counts.y > 0u || glm::distance(there, ground.centre) < ground.radius);
+                      (data_.frame().hasSky() || glm::distance(there, ground.centre) < ground.radius);
     return seen ? std::optional<Pick>({.tree = {}, .leaf = {}, .place = there}) : std::nullopt;
   }
   const StandData::Seen seen = data_.seen(id.x);
@@ -184,9 +176,22 @@ std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const 
   return pick;
 }
 
+// All but the empty sky.
+PixelBox StandRenderer::shown(const View& view, glm::ivec2 size) const {
+  if (data_.frame().hasSky()) return {.low = glm::ivec2(0), .high = size};
+  const glm::mat4 clip = clipFromWorld(view, size, reach(view));
+  const PixelBox trees = pixelsOf(data_.box(), clip, size);
+  if (data_.frame().ground_albedo.w == 0.f) return trees;
+  const GroundDisc& ground = data_.ground();
+  const glm::vec3 radius(ground.radius, ground.radius, 0.f);
+  const PixelBox disc = pixelsOf({ground.centre - radius, ground.centre + radius}, clip, size);
+  if (data_.box().empty()) return disc;
+  return {.low = glm::min(trees.low, disc.low), .high = glm::max(trees.high, disc.high)};
+}
+
 FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost cost) {
   cost.shading_seconds = secondsOf(timed_, [&] {
-    target.beginShading(view.accumulate);
+    target.beginShading(view.accumulate, shown(view, target.size()));
     data_.bind();
     glBindTextureUnit(6, target.visible());
     const ShadingBuffers& buffers = programs_->buffersOf(view.model, data_);
@@ -201,6 +206,7 @@ FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost 
         .use();
     glBindVertexArray(programs_->no_array.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_SCISSOR_TEST);
   });
   return cost;
 }

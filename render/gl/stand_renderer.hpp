@@ -57,6 +57,7 @@ class StandRenderer {
   FrameCost shade(const View& view, FrameTarget& target, FrameCost cost);
   void bindFrame(const View& view, const FrameTarget& target);
   float reach(const View& view) const;
+  PixelBox shown(const View& view, glm::ivec2 size) const;
 
   const Context* context_;
   StandData data_;

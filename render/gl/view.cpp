@@ -2,18 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 namespace sunfleck::gl {
-namespace {
-
-float eyeDistance(const Camera& camera) {
-  return camera.half_width / std::tan(0.5f * camera.field_of_view);
-}
-
-}  // namespace
-
 glm::vec2 sampleOffset(int number) {
   if (number == 0) return glm::vec2(0.f);
   const double pair = (number + 1) / 2;  // 1, 1, 2, 2, ...
@@ -51,6 +44,23 @@ glm::mat4 clipFromWorld(const View& view, glm::ivec2 size, float reach) {
 std::array<glm::vec4, 4> sidesOf(const glm::mat4& clip_from_world) {
   const glm::mat4 rows = glm::transpose(clip_from_world);
   return {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1]};
+}
+
+PixelBox pixelsOf(const Bounds& box, const glm::mat4& clip_from_world, glm::ivec2 size) {
+  if (box.empty()) return {};
+  const glm::vec2 all(size);
+  glm::vec2 low = all, high(0.f);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::bvec3 far(corner & 1, corner & 2, corner & 4);
+    const glm::vec4 clip = clip_from_world * glm::vec4(glm::mix(box.low, box.high, far), 1.f);
+    if (!(clip.w > 0.f)) return {.low = glm::ivec2(0), .high = size};
+    const glm::vec2 pixel = 0.5f * (glm::vec2(clip) / clip.w + 1.f) * all;
+    low = glm::min(low, pixel);
+    high = glm::max(high, pixel);
+  }
+  // A pixel more, for what roundings may do.
+  return {.low = glm::ivec2(glm::clamp(glm::floor(low) - 1.f, glm::vec2(0.f), all)),
+          .high = glm::ivec2(glm::clamp(glm::ceil(high) + 1.f, glm::vec2(0.f), all))};
 }
 
 float pixelsPerMetre(const Camera& camera, float distance) {

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include "core/bounds.hpp"
 #include "render/camera.hpp"
 #include "render/model.hpp"
 
@@ -19,7 +20,6 @@ struct View {
   glm::vec2 offset{0.f};     // of the sample in each pixel from its middle [pixel]
   bool accumulate = false;   // add to the radiances that the target holds
   float piece_pixels = 0.f;  // leaves and twigs are drawn fewer and larger, up to so many pixels (R25); 0: as they are
-  std::uint32_t layer_light = 0;  // whose foliage is told in layers
 };
 
 // Of the samples of a picture: each pair lies opposite about the middle of the pixel, so that the mean over the pixel
@@ -33,6 +33,14 @@ glm::mat4 clipFromWorld(const View& view, glm::ivec2 size, float reach);
 
 // Left, right, bottom and top of what clip coordinates hold: dot(xyz, point) + w >= 0 within.
 std::array<glm::vec4, 4> sidesOf(const glm::mat4& clip_from_world);
+
+// Pixels of a target, from the lower left.
+struct PixelBox {
+  glm::ivec2 low{0}, high{0};  // high is beyond the last
+  bool operator==(const PixelBox&) const = default;
+};
+// Pixels in which a box [m] may be seen, of a target of `size` pixels: all where a part of it is behind the eye.
+PixelBox pixelsOf(const Bounds& box, const glm::mat4& clip_from_world, glm::ivec2 size);
 
 // Pixels along a metre that faces the camera, at a distance from the eye.
 float pixelsPerMetre(const Camera& camera, float distance);

@@ -52,11 +52,6 @@ struct FragmentShading::Texts {
 #include "render/shading/shade.glsl"
 #include "render/shading/spp.glsl"
   };
-  struct Sppg final : Text {
-    using Text::Text;
-#include "render/shading/shade.glsl"
-#include "render/shading/sppg.glsl"
-  };
   struct Tables final : Text {
     using Text::Text;
 #include "render/shading/shade.glsl"
@@ -68,9 +63,8 @@ struct FragmentShading::Texts {
       case Model::ss:
         return std::make_unique<Ss>(data);
       case Model::spp:
-        return std::make_unique<Spp>(data);
       case Model::sppg:
-        return std::make_unique<Sppg>(data);
+        return std::make_unique<Spp>(data);
       case Model::sppr:
       case Model::nstreamg:
       case Model::pp:
@@ -107,8 +101,8 @@ Shaded FragmentShading::shade(const Fragment& fragment) const {
   for (uint light = 0; light < lights_; ++light) {
     const Shaded one = shadeByLight(fragment.surface, fragment.lights[light], light);
     all.direct += one.direct;
+    all.scattered += one.scattered;
     all.single += one.single;
-    all.multiple += one.multiple;
   }
   return all;
 }

@@ -6,8 +6,8 @@ Shaded shadeByLight(Surface surface, Foliage foliage, float thickness, float com
   vec3 irradiance = vec3(lights[light].irradiance);
   Shaded shaded;
   shaded.direct = irradiance * directRadiance(surface, light, foliage.visible);
+  shaded.scattered = irradiance * scattered.radiance;
   shaded.single = irradiance * scattered.single;
-  shaded.multiple = irradiance * scattered.multiple;
   return shaded;
 }
 
@@ -17,11 +17,11 @@ Shaded shadeBySky(Surface surface, vec3 sky) {
   Shaded shaded;
   shaded.direct = vec3(0.0f);
   shaded.single = vec3(0.0f);
-  shaded.multiple = sky * (surface.reflectance + surface.transmittance);
+  shaded.scattered = sky * (surface.reflectance + surface.transmittance);
   if (surface.roughness > 0.0f) {
     Gloss gloss = glossSeen(surface);
     vec3 reflected = gloss.albedo * gloss.intensity;
-    shaded.multiple = reflected * sky + (vec3(1.0f) - reflected) * shaded.multiple;
+    shaded.scattered = reflected * sky + (vec3(1.0f) - reflected) * shaded.scattered;
   }
   return shaded;
 }

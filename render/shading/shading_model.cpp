@@ -48,7 +48,7 @@ Numbers exactNumbers(std::span<const TreeKind> kinds, const spp::PowerTableOf& e
 constexpr std::array kShadingModels{
     ShadingModel{Model::ss, "render/shading/ss.glsl", none},
     ShadingModel{Model::spp, "render/shading/spp.glsl", none},
-    ShadingModel{Model::sppg, "render/shading/sppg.glsl", none},
+    ShadingModel{Model::sppg, "render/shading/spp.glsl", none},
     ShadingModel{Model::sppr, "render/shading/tables.glsl", refinedNumbers},
     ShadingModel{Model::nstreamg, "render/shading/tables.glsl", streamNumbers},
     ShadingModel{Model::pp, "render/shading/tables.glsl", exactNumbers},

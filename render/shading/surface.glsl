@@ -36,13 +36,14 @@ Surface woodSurface(uint kind, uint tree, vec3 normal, vec3 to_eye) {
 
 // What a model tells of light that was scattered before: radiance towards the eye for irradiance 1  [1/sr].
 struct Scattered {
-  vec3 single;
-  vec3 multiple;
+  vec3 radiance;
+  vec3 single;  // what of it was scattered once
 };
+// By a model that does not tell how often (tellsSingle() of render/model.hpp).
 Scattered notTold(vec3 radiance) {
   Scattered scattered;
+  scattered.radiance = radiance;
   scattered.single = vec3(0.0f);
-  scattered.multiple = radiance;
   return scattered;
 }
 
@@ -120,7 +121,7 @@ float glossShare(Surface surface, uint light, float eye, float slant_cosine) {
 
 // (R26, R27) Radiance towards the eye of diffuse light that is uniform over each half of the sphere about the light's
 // axis: the integrals S+ and S- of Shinya et al. 2013, Eq. 32, which Lambert's law has in closed form.
-Scattered fromHalves(Surface surface, uint light, HalvesLight halves) {
+vec3 fromHalves(Surface surface, uint light, HalvesLight halves) {
   float slant_cosine = toLightCosine(surface, light);
   vec3 same, other;  // irradiance of both sides
   for (int band = 0; band < 3; ++band) {
@@ -154,5 +155,5 @@ Scattered fromHalves(Surface surface, uint light, HalvesLight halves) {
     sides.other = other[band];
     radiance[band] = lambertRadiance(sides, surface.reflectance[band], surface.transmittance[band]);
   }
-  return notTold(reflected + entering * radiance);
+  return reflected + entering * radiance;
 }

@@ -34,7 +34,7 @@ struct Surface {
 
 // Radiance towards the eye, per band [1/sr, times irradiance].
 struct Shaded {
-  vec3 direct;    // of light that was scattered here alone
-  vec3 single;    // of light that was scattered once before; 0 where the model does not tell
-  vec3 multiple;  // all other
+  vec3 direct;     // of light that was scattered here alone
+  vec3 scattered;  // of light that was scattered before
+  vec3 single;     // what of that was scattered once before; 0 where the model does not tell
 };

@@ -19,5 +19,5 @@ Scattered scatteredLight(Surface surface, Foliage foliage, float thickness, floa
   HalvesLight diffuse;
   diffuse.down = compensation * tablePower(place, thin, 0u);
   diffuse.up = compensation * tablePower(place, thin, 1u);
-  return fromHalves(surface, light, diffuse);
+  return notTold(fromHalves(surface, light, diffuse));
 }

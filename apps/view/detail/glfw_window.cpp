@@ -130,7 +130,6 @@ class GlfwWindow final : public Window {
     glfwGetWindowContentScale(window_, &x, &y);
     return std::max(1.f, x);
   }
-  void title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
 
  private:
   static GlfwWindow& of(GLFWwindow* window) { return *static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window)); }

@@ -21,6 +21,8 @@ struct FrameData {
   glm::vec4 cell_part{1.f};
   glm::uvec4 counts{0u};
   std::array<LightFrame, 4> lights{};
+
+  bool hasSky() const { return counts.y > 0u; }
 };
 static_assert(sizeof(FrameData) == 64 + 13 * 16 + 4 * 64);
 
