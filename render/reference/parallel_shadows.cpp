@@ -48,6 +48,24 @@ struct Outline {
   }
 };
 
+// All that stands, copy after copy, about the scene's origin.
+std::vector<Facet> placed(const RayScene::Geometry& scene) {
+  std::vector<std::vector<Facet>> of_kinds;
+  for (std::uint32_t kind = 0; kind < scene.prototypes.size(); ++kind) of_kinds.push_back(scene.facets(kind));
+  std::vector<Facet> all;
+  for (const Copy& copy : scene.copies) {
+    const double c = double{copy.cosine}, s = double{copy.sine};
+    const auto rotated = [&](const glm::dvec3& v) { return glm::dvec3(c * v.x - s * v.y, s * v.x + c * v.y, v.z); };
+    for (Facet facet : of_kinds[copy.kind]) {
+      facet.corner = rotated(facet.corner) + glm::dvec3(copy.translation);
+      facet.first = rotated(facet.first);
+      facet.second = rotated(facet.second);
+      all.push_back(facet);
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 BeforeFacet* beforeFacet() {
@@ -64,19 +82,20 @@ ParallelShadows::ParallelShadows(const RayScene::Geometry& scene, const glm::vec
   along_ = glm::normalize(glm::dvec3(axes.along));
   right_ = glm::normalize(glm::dvec3(axes.right) - glm::dot(glm::dvec3(axes.right), along_) * along_);
   up_ = glm::cross(along_, right_);
-  if (scene.period) return;
-  const std::optional<std::vector<Facet>> facets = scene.facets(kMostFacets);
-  if (!facets || facets->empty()) return;
+  std::size_t primitives = 0;
+  for (const Copy& copy : scene.copies) primitives += scene.prototypes[copy.kind].planes.size();
+  if (scene.period || scene.masked() || primitives == 0 || primitives > kMostFacets) return;
+  const std::vector<Facet> facets = placed(scene);
 
   std::vector<Outline> outlines;
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Facet& facet : *facets) {
+  for (const Facet& facet : facets) {
     const Outline& outline = outlines.emplace_back(facet, right_, up_);
     low = glm::min(low, outline.low());
     high = glm::max(high, outline.high());
   }
   const glm::dvec2 size = high - low;
-  const double cells = std::ceil(static_cast<double>(facets->size()) / kFacetsPerCell);
+  const double cells = std::ceil(static_cast<double>(facets.size()) / kFacetsPerCell);
   cell_ = std::max({std::sqrt(size.x * size.y / cells), size.x / cells, size.y / cells, double{scene.lift}});
   per_cell_ = 1. / cell_;
   // Half a cell around, so that rounding leads no point of the edge outside.
@@ -103,7 +122,7 @@ ParallelShadows::ParallelShadows(const RayScene::Geometry& scene, const glm::vec
     listed += count;
     read += count * std::ceil(count / FacetBlock::kSize);
   }
-  if (read <= kMostBlocksRead * listed) fill(*facets, lists);
+  if (read <= kMostBlocksRead * listed) fill(facets, lists);
 }
 
 void ParallelShadows::fill(const std::vector<Facet>& facets, std::vector<std::vector<std::uint32_t>>& lists) {

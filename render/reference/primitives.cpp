@@ -52,40 +52,31 @@ Primitives paired(std::span<const glm::uvec3> triangles, std::span<const std::ui
 
 using namespace detail;
 
-std::optional<std::vector<Facet>> RayScene::Geometry::facets(std::size_t most) const {
+std::vector<Facet> RayScene::Geometry::facets(std::uint32_t kind) const {
   std::vector<Facet> facets;
-  std::size_t primitives = 0;
-  for (const Copy& copy : copies) {
-    const Prototype& prototype = prototypes[copy.kind];
-    primitives += prototype.planes.size();
-    if (primitives > most || prototype.cuts) return std::nullopt;
-  }
-  for (const Copy& copy : copies) {
-    const Prototype& prototype = prototypes[copy.kind];
-    const std::size_t leaves = prototype.leaf_of_primitive.size();
-    for (const unsigned number : {kLeaves, kWood}) {
-      const std::size_t count = number == kLeaves ? leaves : prototype.planes.size() - leaves;
-      if (count == 0) continue;
-      const RTCGeometry geometry = rtcGetGeometry(scenes.prototypes[copy.kind].get(), number);
-      const auto* vertices =
-          static_cast<const glm::vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
-      const auto* corners =
-          static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
-      const std::size_t each = (number == kLeaves ? prototype.leaf_quads : prototype.wood_quads) ? 4 : 3;
-      const auto at = [&](std::uint32_t vertex) {
-        const glm::dvec3 v(vertices[vertex]);
-        const double c = double{copy.cosine}, s = double{copy.sine};
-        return glm::dvec3(c * v.x - s * v.y, s * v.x + c * v.y, v.z) + glm::dvec3(copy.translation);
-      };
-      for (std::size_t i = 0; i < count; ++i, corners += each) {
-        const glm::dvec3 zero = at(corners[0]), one = at(corners[1]), last = at(corners[each - 1]);
-        const bool pair = each == 4 && corners[2] != corners[3];
-        facets.push_back({.corner = zero, .first = one - zero, .second = last - zero});
-        if (!pair) continue;
-        const glm::dvec3 two = at(corners[2]);
-        facets.back().parallelogram = glm::length(zero + two - one - last) <= double{lift};
-        if (!facets.back().parallelogram) facets.push_back({.corner = two, .first = last - two, .second = one - two});
-      }
+  const Prototype& prototype = prototypes[kind];
+  const std::size_t leaves = prototype.leaf_of_primitive.size();
+  for (const unsigned number : {kLeaves, kWood}) {
+    const std::size_t count = number == kLeaves ? leaves : prototype.planes.size() - leaves;
+    if (count == 0) continue;
+    const RTCGeometry geometry = rtcGetGeometry(scenes.prototypes[kind].get(), number);
+    const auto* vertices = static_cast<const glm::vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    const auto* corners =
+        static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
+    const std::size_t each = (number == kLeaves ? prototype.leaf_quads : prototype.wood_quads) ? 4 : 3;
+    const auto at = [&](std::uint32_t vertex) { return glm::dvec3(vertices[vertex]); };
+    for (std::uint32_t i = 0; i < count; ++i, corners += each) {
+      const glm::dvec3 zero = at(corners[0]), one = at(corners[1]), last = at(corners[each - 1]);
+      const bool pair = each == 4 && corners[2] != corners[3];
+      Facet facet{.corner = zero, .first = one - zero, .second = last - zero, .primitive = i, .wood = number == kWood};
+      const glm::dvec3 two = pair ? at(corners[2]) : glm::dvec3(0.);
+      facet.parallelogram = pair && glm::length(zero + two - one - last) <= double{lift};
+      facets.push_back(facet);
+      if (!pair || facet.parallelogram) continue;
+      facet.corner = two;
+      facet.first = last - two;
+      facet.second = one - two;
+      facets.push_back(facet);
     }
   }
   return facets;

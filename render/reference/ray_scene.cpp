@@ -14,6 +14,8 @@ namespace sunfleck {
 using namespace detail;
 namespace {
 
+// Of the kinds together: 60 MB, and a second to make.
+constexpr std::size_t kMostWalked = 1'000'000;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 void keepFirstError(void* text, RTCError code, const char* message) {
@@ -173,6 +175,9 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
   surfaces = std::any_of(prototypes.begin(), prototypes.end(), [](const auto& of) { return !of.planes.empty(); });
   checkEmbree();
   scenes = commit(std::move(made), RTC_SCENE_FLAG_NONE);
+  std::size_t primitives = 0;
+  for (const Prototype& prototype : prototypes) primitives += prototype.planes.size();
+  walks_ = RayTrees::suitMachine() && !masked() && primitives <= kMostWalked;
 }
 
 void RayScene::Geometry::checkEmbree() const {
@@ -185,10 +190,7 @@ Scenes RayScene::Geometry::commit(std::vector<EmbreeScene> of_kinds, RTCSceneFla
     rtcSetSceneFlags(prototype.get(), flags);
     rtcCommitScene(prototype.get());
   }
-  const Copy& first = copies.front();
-  const bool alone =
-      copies.size() == 1 && first.translation == glm::vec3(0.f) && first.sine == 0.f && first.cosine > 0.f;
-  if (!alone) {
+  if (!standsAsItIs(copies)) {
     made.instances.reset(rtcNewScene(device.get()));
     rtcSetSceneFlags(made.instances.get(), flags);
     for (std::size_t i = 0; i < copies.size(); ++i)
@@ -214,46 +216,81 @@ RTCScene RayScene::Geometry::countingScene() const {
 }
 
 // The point is put back on its triangle's plane, as travel along a long ray rounds more than a plane does.
-Hit RayScene::Geometry::describe(const RTCHit& hit, const glm::vec3& from, const glm::vec3& direction,
-                                 float distance_along) const {
-  const bool leaf = hit.geomID == kLeaves;
-  const glm::vec3 travelled = from + distance_along * direction;
-  const bool alone = hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
-  const Copy& copy = copies[alone ? 0 : hit.instID[0]];
+Hit RayScene::Geometry::describe(const Met& met, const glm::vec3& from, const glm::vec3& direction) const {
+  const glm::vec3 travelled = from + met.distance * direction;
+  const Copy& copy = copies[met.copy];
   const Prototype& prototype = prototypes[copy.kind];
-  // Embree's second triangle of a quad turns u and v about.
-  const glm::vec4& plane =
-      prototype.planes[hit.primID + (leaf ? 0 : prototype.leaf_of_primitive.size())][hit.u + hit.v > 1.f];
-  glm::vec3 normal(plane);
-  float distance = plane.w;
-  if (!alone) {
+  glm::vec3 normal(met.plane);
+  float distance = met.plane.w;
+  if (scenes.instances) {
     normal = copy.rotated(normal);
     distance += glm::dot(normal, copy.translation);
   }
   const bool front = glm::dot(normal, direction) <= 0.f;
-  return {.surface = leaf ? Surface::leaf : Surface::wood,
+  return {.surface = met.leaf ? Surface::leaf : Surface::wood,
           .kind = copy.kind,
-          .leaf = leaf ? prototype.leaf_of_primitive[hit.primID] : 0,
+          .leaf = met.leaf ? prototype.leaf_of_primitive[met.primitive] : 0,
           .position = travelled - (glm::dot(normal, travelled) - distance) * normal,
           .front = front,
           .normal = front ? normal : -normal};
 }
 
+Met RayScene::Geometry::metBy(const RTCHit& hit, float distance) const {
+  const std::uint32_t copy = hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? 0 : hit.instID[0];
+  const bool leaf = hit.geomID == kLeaves;
+  const Prototype& prototype = prototypes[copies[copy].kind];
+  // Embree's second triangle of a quad turns u and v about.
+  const glm::vec4& plane =
+      prototype.planes[hit.primID + (leaf ? 0 : prototype.leaf_of_primitive.size())][hit.u + hit.v > 1.f];
+  return {.copy = copy, .primitive = hit.primID, .leaf = leaf, .plane = plane, .distance = distance};
+}
+
+const RayTrees* RayScene::Geometry::walked() const {
+  if (!walks_) return nullptr;
+  if (const RayTrees* made = walked_.load(std::memory_order_acquire)) return made;
+  std::call_once(trees_made_, [&] {
+    std::vector<std::vector<Facet>> of_kinds;
+    for (std::uint32_t kind = 0; kind < prototypes.size(); ++kind) of_kinds.push_back(facets(kind));
+    trees_ = std::make_unique<const RayTrees>(of_kinds, copies);
+    walked_.store(trees_.get(), std::memory_order_release);
+  });
+  return trees_.get();
+}
+
+std::optional<Met> RayScene::Geometry::first(const glm::vec3& from, const glm::vec3& direction, Coherence coherence,
+                                             float reach) const {
+  if (const RayTrees* trees = walked()) {
+    FacetMet met;
+    if (!trees->closest(from, direction, reach, met)) return std::nullopt;
+    return Met{.copy = met.copy,
+               .primitive = met.facet & FacetLeaf::kNumber,
+               .leaf = !(met.facet & FacetLeaf::kWood),
+               .plane = {met.plane[0], met.plane[1], met.plane[2], met.plane[3]},
+               .distance = met.distance};
+  }
+  RTCRayHit ray = rayFrom(from, direction, reach);
+  closestHit(scenes.root(), ray, coherence);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return metBy(ray.hit, ray.ray.tfar);
+}
+
+bool RayScene::Geometry::any(const glm::vec3& from, const glm::vec3& direction, float reach) const {
+  if (const RayTrees* trees = walked()) return trees->blocked(from, direction, reach);
+  RTCRay ray;
+  set(ray, from, direction, reach);
+  anyHit(scenes.root(), ray);
+  return ray.tfar < 0.f;
+}
+
 Hit RayScene::Geometry::closest(const glm::vec3& from, const glm::vec3& direction, Coherence coherence,
                                 float reach) const {
   if (period) return closestInPeriods(from, direction, coherence, media.empty() ? kInfinity : reach);
-  RTCRayHit ray = rayFrom(from, direction, reach);
-  closestHit(scenes.root(), ray, coherence);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return describe(ray.hit, from, direction, ray.ray.tfar);
+  const std::optional<Met> met = first(from, direction, coherence, reach);
+  return met ? describe(*met, from, direction) : Hit{};
 }
 
 bool RayScene::Geometry::blocked(const glm::vec3& from, const glm::vec3& direction) const {
-  if (period) return blockedInPeriods(from, direction);
-  RTCRay ray;
-  set(ray, from, direction, kInfinity);
-  anyHit(scenes.root(), ray);
-  return ray.tfar < 0.f;
+  return period ? blockedInPeriods(from, direction) : any(from, direction, kInfinity);
 }
 
 void RayScene::Geometry::closest(std::span<const glm::vec3> from, std::span<const Direction> directions,
@@ -282,7 +319,7 @@ void RayScene::Geometry::closest(std::span<const glm::vec3> from, std::span<cons
     hit.instID[0] = rays.hit.instID[0][i];
     hit.u = rays.hit.u[i];
     hit.v = rays.hit.v[i];
-    hits[i] = describe(hit, from[i], directions[i], rays.ray.tfar[i]);
+    hits[i] = describe(metBy(hit, rays.ray.tfar[i]), from[i], directions[i]);
   }
 }
 
@@ -354,12 +391,10 @@ Hit RayScene::Geometry::closestInPeriods(glm::vec3 point, const glm::vec3& direc
   if (!surfaces || !enterLayer(point, direction, reach)) return hit;
   throughPeriods(*this, point, direction, [&](const glm::vec3& from, float length) {
     if (reach <= 0.f) return true;
-    RTCRayHit ray = rayFrom(from, direction, std::min(length, reach));
-    closestHit(scenes.root(), ray, coherence);
+    const std::optional<Met> met = first(from, direction, coherence, std::min(length, reach));
     reach -= length;
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit = describe(ray.hit, from, direction, ray.ray.tfar);
-    return true;
+    if (met) hit = describe(*met, from, direction);
+    return met.has_value();
   });
   return hit;
 }
@@ -368,12 +403,8 @@ bool RayScene::Geometry::blockedInPeriods(glm::vec3 point, const glm::vec3& dire
   bool found = false;
   float reach = kInfinity;
   if (!surfaces || !enterLayer(point, direction, reach)) return found;
-  throughPeriods(*this, point, direction, [&](const glm::vec3& from, float length) {
-    RTCRay ray;
-    set(ray, from, direction, length);
-    anyHit(scenes.root(), ray);
-    return found = ray.tfar < 0.f;
-  });
+  throughPeriods(*this, point, direction,
+                 [&](const glm::vec3& from, float length) { return found = any(from, direction, length); });
   return found;
 }
 

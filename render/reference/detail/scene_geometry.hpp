@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -16,7 +17,9 @@
 #include <vector>
 
 #include "render/reference/detail/embree_calls.hpp"
+#include "render/reference/detail/facet.hpp"
 #include "render/reference/detail/medium_field.hpp"
+#include "render/reference/detail/ray_trees.hpp"
 #include "render/reference/detail/stand_copies.hpp"
 #include "render/reference/ray_scene.hpp"
 
@@ -67,10 +70,12 @@ struct Prototype {
   std::unique_ptr<CutLeaves> cuts;               // where masks cut leaves out
 };
 
-// A triangle, or two that make up a parallelogram, in whichever tree it stands: `corner` + u `first` + v `second`.
-struct Facet {
-  glm::dvec3 corner, first, second;  // about the scene's origin [m]
-  bool parallelogram = false;
+// What a ray met of a copy, and how far away.
+struct Met {
+  std::uint32_t copy, primitive;
+  bool leaf;
+  glm::vec4 plane;  // see Prototype::planes
+  float distance;   // [m]
 };
 
 // A ray that would pass more periods than this without meeting anything is taken to leave the layer of leaves by the
@@ -131,8 +136,11 @@ struct RayScene::Geometry {
 
   glm::vec3 wrapped(glm::vec3 point) const;  // the same point in the traced period
   RTCScene countingScene() const;            // leaves alone, watertight, with filters; made when first asked for
-  // All that stands, copy after copy; none where that is more than `most` primitives, or cut by masks.
-  std::optional<std::vector<detail::Facet>> facets(std::size_t most) const;
+  bool masked() const {
+    return std::any_of(prototypes.begin(), prototypes.end(), [](const auto& of) { return of.cuts != nullptr; });
+  }
+  // What a kind of tree is made of, about its pivot.
+  std::vector<detail::Facet> facets(std::uint32_t kind) const;
 
   std::string embree_error;  // the first that Embree reported
   detail::Device device;
@@ -155,12 +163,23 @@ struct RayScene::Geometry {
   float low = 0.f, high = 0.f;      // z of a layer that holds everything with room for lifted points [m]
 
  private:
+  mutable std::unique_ptr<const detail::RayTrees> trees_;  // made when first asked for
+  mutable std::once_flag trees_made_;
+  mutable std::atomic<const detail::RayTrees*> walked_ = nullptr;
+  bool walks_ = false;
+
   void checkEmbree() const;  // throws std::runtime_error if Embree has reported an error
   detail::Scenes commit(std::vector<detail::EmbreeScene> made, RTCSceneFlags flags) const;
-  detail::Hit describe(const RTCHit& hit, const glm::vec3& from, const glm::vec3& direction, float distance) const;
+  detail::Hit describe(const detail::Met& met, const glm::vec3& from, const glm::vec3& direction) const;
   detail::Hit closestInPeriods(glm::vec3 point, const glm::vec3& direction, detail::Coherence coherence,
                                float reach) const;
   bool blockedInPeriods(glm::vec3 point, const glm::vec3& direction) const;
+  // The first that a ray meets before `reach`, or whether there is any.
+  std::optional<detail::Met> first(const glm::vec3& from, const glm::vec3& direction, detail::Coherence coherence,
+                                   float reach) const;
+  bool any(const glm::vec3& from, const glm::vec3& direction, float reach) const;
+  detail::Met metBy(const RTCHit& hit, float distance) const;
+  const detail::RayTrees* walked() const;  // none where Embree is asked
   bool enterLayer(glm::vec3& point, const glm::vec3& direction, float& reach) const;
 };
 

@@ -22,6 +22,12 @@ struct Copy {
   glm::vec3 rotated(const glm::vec3& v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z}; }
 };
 
+// Whether a single tree stands where its prototype does, as it is.
+inline bool standsAsItIs(const std::vector<Copy>& copies) {
+  const Copy& first = copies.front();
+  return copies.size() == 1 && first.translation == glm::vec3(0.f) && first.sine == 0.f && first.cosine > 0.f;
+}
+
 // The copies rays can meet, in coordinates whose origin lies at `origin` of the stand's: near the middle, so that
 // rounding does not depend on where in the world the stand stands. Nor does it on where its meshes have their origins:
 // each prototype is taken about its pivot, a point near its middle from which its vertices differ without rounding.
