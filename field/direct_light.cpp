@@ -59,6 +59,10 @@ DirectLight directLight(const TreeMesh& mesh, const FieldElements& elements, con
   // Whole numbers, of which the sum is the same in any order.
   std::vector<std::atomic<std::uint32_t>> pixels(2 * elements.size());
   std::array<std::uint64_t, kBands> free{};
+  DirectLight light{.along = along,
+                    .irradiance = std::vector<float>(pixels.size()),
+                    .frame = grid.frame(),
+                    .first = std::vector<std::uint32_t>(lines)};
   tbb::parallel_for(std::size_t{0}, kBands, [&](std::size_t band) {
     const std::size_t begin = std::min(lines, band * per_band), end = std::min(lines, begin + per_band);
     std::vector<Crossing64> nearest(end - begin, kNothing);
@@ -67,13 +71,15 @@ DirectLight directLight(const TreeMesh& mesh, const FieldElements& elements, con
         Crossing64& of_line = nearest[line - begin];
         of_line = std::min(of_line, crossing);
       }
-    for (const Crossing64 crossing : nearest)
+    for (std::size_t line = begin; line < end; ++line) {
+      const Crossing64 crossing = nearest[line - begin];
+      light.first[line] = crossing == kNothing ? LineFrame::kNone : detail::sideMet(crossing);
       if (crossing == kNothing)
         ++free[band];
       else
         pixels[detail::sideMet(crossing)].fetch_add(1, std::memory_order_relaxed);
+    }
   });
-  DirectLight light{.along = along, .irradiance = std::vector<float>(pixels.size())};
   std::uint64_t met = 0;
   for (std::size_t side = 0; side < pixels.size(); ++side) {
     const std::uint32_t count = pixels[side].load(std::memory_order_relaxed);
@@ -86,6 +92,20 @@ DirectLight directLight(const TreeMesh& mesh, const FieldElements& elements, con
     light.ground_power =
         static_cast<double>(std::accumulate(free.begin(), free.end(), std::uint64_t{0})) * grid.lineArea();
   return light;
+}
+
+// (F6)
+std::vector<std::uint8_t> litCrossings(const DirectLight& light, const LineExchange& exchange) {
+  std::vector<std::uint8_t> lit(exchange.places.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lit.size(), kTask), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const std::uint32_t line = light.frame.lineAt(glm::dvec3(exchange.places[i]));
+      const std::uint32_t side = line == LineFrame::kNone ? LineFrame::kNone : light.first[line];
+      if (side != LineFrame::kNone && side / 2 == exchange.crossed[i])
+        lit[i] = static_cast<std::uint8_t>(1u << (side & 1u));
+    }
+  });
+  return lit;
 }
 
 }  // namespace sunfleck
