@@ -7,8 +7,6 @@
 #include "core/directions.hpp"
 #include "core/tree_mesh.hpp"
 #include "field/elements.hpp"
-#include "field/line_exchange.hpp"
-#include "field/line_frame.hpp"
 
 namespace sunfleck {
 
@@ -22,20 +20,14 @@ struct DirectEffort {
 // the sun sees the stand, in which each pixel gives its light to the first side behind its middle. No light is lost.
 struct DirectLight {
   Direction along{0.f, 0.f, -1.f};
-  std::vector<float> irradiance;     // of side 2 element (front) and 2 element + 1 (back) [1]
-  double power = 0.;                 // that arrives at all sides, relative to the irradiance [m^2]
-  double ground_power = 0.;          // with a period: that arrives at the ground [m^2]
-  LineFrame frame;                   // of the picture
-  std::vector<std::uint32_t> first;  // side that each pixel sees; LineFrame::kNone
+  std::vector<float> irradiance;  // of side 2 element (front) and 2 element + 1 (back) [1]
+  double power = 0.;              // that arrives at all sides, relative to the irradiance [m^2]
+  double ground_power = 0.;       // with a period: that arrives at the ground [m^2]
 };
 
 //   along   in which the light travels; with a period not level
 //   period  side lengths of the repeated rectangle [m]; none: the stand is alone
 DirectLight directLight(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
                         Direction along, const DirectEffort& effort = {});
-
-// (F6) Which crossings of the exchange lie in the light, by the pixel they fall in: bit 0 of a crossing whose element
-// is lit there from the front, bit 1 of one that is lit from the back.
-std::vector<std::uint8_t> litCrossings(const DirectLight& light, const LineExchange& exchange);
 
 }  // namespace sunfleck

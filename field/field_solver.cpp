@@ -109,86 +109,7 @@ class Solve {
       if (periodic_) source_[ground()][lane] = static_cast<float>(problem.direct_ground / ground_area_);
     }
     direct_ = source_;
-    std::fill(source_.begin(), source_.end() - 1, Lanes{});
-    scatterDirect();
     for (std::size_t lane = 0; lane < problems_.size(); ++lane) addOutside(lane);
-  }
-
-  // (F6) What the elements scatter of direct light, from where they are lit; what of it goes down to the ground and up
-  // is summed apart.
-  void scatterDirect() {
-    std::array<bool, kLanes> done{};
-    for (std::size_t lane = 0; lane < problems_.size(); ++lane) {
-      if (done[lane] || problems_[lane].direct.empty()) continue;
-      const std::span<const std::uint8_t> lit = problems_[lane].lit;
-      Lanes of_sun{};  // 1 for the problems of the same sun
-      for (std::size_t other = lane; other < problems_.size(); ++other)
-        if (!problems_[other].direct.empty() && problems_[other].lit.data() == lit.data()) {
-          of_sun[other] = 1.f;
-          done[other] = true;
-        }
-      scatterDirect(lit, of_sun);
-    }
-  }
-
-  void scatterDirect(std::span<const std::uint8_t> lit, const Lanes& of_sun) {
-    // Radiance of a side, all over it, and more at crossings where it is lit, and where the other side is.
-    struct Sent {
-      Lanes everywhere, own, other;
-    };
-    std::vector<Sent> sent(ground());
-    std::vector<std::uint32_t> lit_crossings(ground());
-    for (std::size_t i = 0; i < lit.size(); ++i)
-      if (lit[i]) ++lit_crossings[2 * exchange_.crossed[i] + (lit[i] == 2)];
-    overBlocks(count(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
-        const std::size_t i = side / 2;
-        const Lanes over_pi = static_cast<float>(1. / kPi) * of_sun;
-        const Lanes reflectance = over_pi * reflectance_[kinds_[i]],
-                    transmittance = over_pi * transmittance_[kinds_[i]];
-        const auto part = [&](std::size_t of, const Lanes& share, Lanes& at_lit) {
-          const Lanes light = share * direct_[of];
-          if (lit_crossings[of] > 0)
-            at_lit = static_cast<float>(exchange_.lines[i]) / static_cast<float>(lit_crossings[of]) * light;
-          else
-            sent[side].everywhere += light;
-        };
-        part(side, reflectance, sent[side].own);
-        part(side ^ 1u, transmittance, sent[side].other);
-      }
-    });
-    const auto radiance = [&](std::size_t side, std::uint32_t crossing) {
-      const Sent& of = sent[side];
-      const unsigned bits = lit.empty() ? 0u : lit[crossing];
-      Lanes sum = of.everywhere;
-      if (bits == 0) return sum;
-      return sum + (bits == 1u + (side & 1u) ? of.own : of.other);
-    };
-    struct Leaving {
-      Sums down{}, up{};
-    };
-    std::vector<Leaving> leaving((count() + kBlock - 1) / kBlock);
-    overBlocks(count(), [&](std::size_t block, std::size_t begin, std::size_t end) {
-      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
-        Lanes sum{}, down{}, up{};
-        for (std::uint64_t i = exchange_.first[side]; i < exchange_.first[side + 1]; ++i)
-          sum += radiance(exchange_.sees[i], exchange_.seen_at[i]);
-        for (std::uint64_t i = exchange_.first_outside[side]; i < exchange_.first_outside[side + 1]; ++i)
-          (exchange_.directions[exchange_.outside[i]].z > 0.f ? down : up) += radiance(side, exchange_.outside_at[i]);
-        addTo(leaving[block].down, down);
-        addTo(leaving[block].up, up);
-        source_[side] += static_cast<float>(kPi) / static_cast<float>(std::max(exchange_.lines[side / 2], 1u)) * sum;
-      }
-    });
-    for (const Leaving& part : leaving)
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        direct_down_[lane] += part.down[lane];
-        direct_up_[lane] += part.up[lane];
-      }
-    if (periodic_)
-      for (std::size_t lane = 0; lane < kLanes; ++lane)
-        if (of_sun[lane] > 0.f)
-          source_[ground()][lane] += static_cast<float>(direct_down_[lane] * exchange_.line_power / ground_area_);
   }
 
   void addOutside(std::size_t lane) {
@@ -267,8 +188,7 @@ class Solve {
       passed_[side] = passed;
       const Lanes weight = all(weight_[side]);
       addTo(of_block.squares, weight * change * change);
-      const Lanes whole = side < ground() ? passed + direct_[side] : passed;
-      addTo(of_block.light_squares, weight * whole * whole);
+      addTo(of_block.light_squares, weight * passed * passed);
       for (std::size_t j = 0; j < kept; ++j) {
         const Lanes weighted = weight * change_steps_[j][side];
         addTo(of_block.with_change[j], weighted * change);
@@ -389,16 +309,16 @@ class Solve {
       const FieldProblem& problem = problems_[lane];
       solution.scattered.resize(ground());
       FieldBalance& balance = balance_[lane];
-      double below = direct_down_[lane], above = direct_up_[lane];
+      double below = 0., above = 0.;
       for (std::size_t side = 0; side < ground(); ++side) {
         const std::size_t element = side / 2;
         // An element that no line meets takes after the one before it.
-        solution.scattered[side] = exchange_.lines[element] == 0 && element > 0 ? solution.scattered[side - 2]
-                                                                                : std::max(0.f, light_[side][lane]);
+        solution.scattered[side] = exchange_.lines[element] == 0 && element > 0
+                                       ? solution.scattered[side - 2]
+                                       : std::max(0.f, light_[side][lane] - direct_[side][lane]);
         const ElementOptics& optics = problem.optics[kinds_[element]];
         const double absorbed = (1. - double{optics.reflectance} - double{optics.transmittance}) *
-                                double{light_[side][lane] + direct_[side][lane]} * exchange_.lines[element] *
-                                area_per_line;
+                                double{light_[side][lane]} * exchange_.lines[element] * area_per_line;
         (element < elements_.leaf_elements ? balance.absorbed_leaves : balance.absorbed_wood) += absorbed;
         const auto outside = exchange_.first_outside[side + 1] - exchange_.first_outside[side];
         below += double{radiance_[side][lane]} * exchange_.below[side];
@@ -439,7 +359,6 @@ class Solve {
   std::array<Sums, kHistory> with_change_{};
   std::array<std::array<Sums, kHistory>, kHistory> with_steps_{};
   Sums squares_{}, light_squares_{};
-  Sums direct_down_{}, direct_up_{};  // direct light scattered once that leaves [1/sr]
   std::array<FieldBalance, kLanes> balance_{};
   int iterations_ = 0;
 };

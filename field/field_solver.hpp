@@ -20,7 +20,6 @@ struct ElementOptics {
 // One case to solve: light of one band and from one source, and what it meets.
 struct FieldProblem {
   std::span<const float> direct;          // of each side [1]; empty: none
-  std::span<const std::uint8_t> lit{};    // of each crossing, as litCrossings(); empty: sides are lit evenly
   double direct_ground = 0.;              // with a period: that reaches the ground [m^2]
   std::span<const float> outside{};       // radiance of the sky in which light travels in each of the exchange's
                                           // directions [1/sr]; 0 for those that rise; empty: none

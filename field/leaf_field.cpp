@@ -77,7 +77,6 @@ LeafField::LeafField(const FieldEffort& effort)
       exchange_product_(graph_.add("exchange")),
       recollision_product_(graph_.add("recollision")),
       direct_product_(graph_.add("direct light")),
-      lit_product_(graph_.add("lit crossings")),
       solution_product_(graph_.add("solutions")) {
   const auto all = [](std::size_t members) {
     return [members](std::size_t, const ProductGraph::Mark& mark) {
@@ -88,13 +87,10 @@ LeafField::LeafField(const FieldEffort& effort)
   graph_.follows(direct_product_, elements_product_, all(kMostSuns));
   graph_.follows(recollision_product_, exchange_product_, all(1));
   graph_.follows(solution_product_, recollision_product_, all(kSources));
-  const auto same = [](std::size_t sun, const ProductGraph::Mark& mark) { mark(sun); };
-  graph_.follows(lit_product_, exchange_product_, all(kMostSuns));
-  graph_.follows(lit_product_, direct_product_, same);
-  graph_.follows(solution_product_, lit_product_, same);
+  graph_.follows(solution_product_, direct_product_,
+                 [](std::size_t sun, const ProductGraph::Mark& mark) { mark(sun); });
   for (const auto product : {elements_product_, exchange_product_, recollision_product_}) graph_.resize(product, 1);
   graph_.resize(direct_product_, kMostSuns);
-  graph_.resize(lit_product_, kMostSuns);
   graph_.resize(solution_product_, kSources);
 }
 
@@ -182,7 +178,6 @@ const FieldResult& LeafField::solve(const FieldLighting& lighting) {
   graph_.bring(direct_product_, suns, [&](std::size_t sun) {
     direct_[sun] = directLight(mesh_, elements_, stand_.period, lighting_.suns[sun].along, effort_.direct);
   });
-  graph_.bring(lit_product_, suns, [&](std::size_t sun) { lit_[sun] = litCrossings(direct_[sun], exchange_); });
   std::vector<std::size_t> sources = suns, stale;
   if (lighting.sky) sources.push_back(kSky);
   for (const std::size_t source : sources)
@@ -236,7 +231,6 @@ void LeafField::makeSolutions(std::span<const std::size_t> stale) {
         problem.ground_open = static_cast<float>(sky_irradiance[static_cast<int>(band)]);
       } else {
         problem.direct = direct_[source].irradiance;
-        problem.lit = lit_[source];
         problem.direct_ground = direct_[source].ground_power;
         problem.ground_open = -direct_[source].along.z;
       }

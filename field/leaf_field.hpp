@@ -85,8 +85,9 @@ class LeafField {
 
   const FieldElements& elements() const { return elements_; }                  // of all trees, one after the other
   std::size_t firstLeaf(std::size_t tree) const { return first_leaf_[tree]; }  // in elements().leaf
-  std::vector<ProductCost> costs() const { return graph_.costs(); }  // elements, exchange, recollision, direct, lit,
-                                                                     // solutions
+  std::vector<ProductCost> costs() const {
+    return graph_.costs();
+  }  // elements, exchange, recollision, direct, solution
 
  private:
   // Light from a sun or, the last, from the sky.
@@ -102,8 +103,7 @@ class LeafField {
   FieldLighting lighting_;
 
   ProductGraph graph_;
-  ProductGraph::Product elements_product_, exchange_product_, recollision_product_, direct_product_, lit_product_,
-      solution_product_;
+  ProductGraph::Product elements_product_, exchange_product_, recollision_product_, direct_product_, solution_product_;
 
   TreeMesh mesh_;                        // of all trees
   FieldElements elements_;               // of it
@@ -113,7 +113,6 @@ class LeafField {
   FieldAlbedo albedo_;
   double recollision_ = 0.;
   std::array<DirectLight, kMostSuns> direct_;
-  std::array<std::vector<std::uint8_t>, kMostSuns> lit_;  // see litCrossings
   std::array<std::array<FieldSolution, kBands>, kSources> solutions_;
   FieldResult result_;
 };

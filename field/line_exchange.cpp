@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -28,7 +27,6 @@ constexpr std::uint32_t kFirstOnLine = 1u << 31;  // marks a side, of which ther
 // What the lines along one axis cross: the sides they come to, line by line; lines that cross nothing left out.
 struct AxisCrossings {
   std::vector<std::uint32_t> sides;
-  std::vector<glm::vec3> places;  // [m]
   std::uint64_t lines = 0, free_lines = 0;
 };
 
@@ -61,9 +59,8 @@ AxisCrossings crossingsAlong(const LineGrid& grid, Work& work) {
   for (std::uint32_t& next : work.next) sum += std::exchange(next, sum);
   work.sorted.resize(work.found.size());
   for (const auto& [line, crossing] : work.found) work.sorted[work.next[line]++] = crossing;
-  AxisCrossings result{.sides = {}, .places = {}, .lines = grid.lines()};
+  AxisCrossings result{.sides = {}, .lines = grid.lines()};
   result.sides.reserve(work.found.size());
-  result.places.reserve(work.found.size());
   std::uint32_t begin = 0;
   for (std::size_t line = 0; line < grid.lines(); ++line) {
     const std::uint32_t end = work.next[line];
@@ -72,10 +69,8 @@ AxisCrossings crossingsAlong(const LineGrid& grid, Work& work) {
       continue;
     }
     sortLine(&work.sorted[begin], work.sorted.data() + end);
-    for (std::uint32_t i = begin; i < end; ++i) {
+    for (std::uint32_t i = begin; i < end; ++i)
       result.sides.push_back(sideMet(work.sorted[i]) | (i == begin ? kFirstOnLine : 0));
-      result.places.emplace_back(grid.frame().point(line, double{detail::depthOf(work.sorted[i])}));
-    }
     begin = end;
   }
   return result;
@@ -103,8 +98,7 @@ struct ChunkLinks {
   std::vector<std::uint32_t> met, outside;
 };
 
-// Calls link(side, source, crossing of the source) and outside(side, direction, its own crossing) for what each side
-// sees on the lines along an axis.
+// Calls link(side, source) and outside(side, direction) for what each side sees on the lines along an axis.
 template <typename Link, typename Outside>
 void forLinks(const AxisCrossings& axis, std::size_t number, std::size_t axes, const Link& link,
               const Outside& outside) {
@@ -113,13 +107,13 @@ void forLinks(const AxisCrossings& axis, std::size_t number, std::size_t axes, c
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t side = axis.sides[i] & ~kFirstOnLine;
     if (axis.sides[i] & kFirstOnLine)
-      outside(side, along, i);
+      outside(side, along);
     else
-      link(side, (axis.sides[i - 1] & ~kFirstOnLine) ^ 1u, i - 1);
+      link(side, (axis.sides[i - 1] & ~kFirstOnLine) ^ 1u);
     if (i + 1 == count || axis.sides[i + 1] & kFirstOnLine)
-      outside(side ^ 1u, against, i);
+      outside(side ^ 1u, against);
     else
-      link(side ^ 1u, axis.sides[i + 1], i + 1);
+      link(side ^ 1u, axis.sides[i + 1]);
   }
 }
 
@@ -146,7 +140,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
                                2. * leaves / static_cast<double>(elements.leaf_elements));
   const double line_area = 0.5 * area / double{effort.crossings};
   const double crossings = 0.5 * total / line_area * static_cast<double>(axes);
-  const double bytes = crossings * 48. + static_cast<double>(elements.size()) * (8. * kChunks + 40.);
+  const double bytes = crossings * 40. + static_cast<double>(elements.size()) * (8. * kChunks + 40.);
   if (const double available = availableMemory(); bytes > available)
     throw InvalidInput("the light field: must be of fewer leaves or lines: it would take " +
                        std::to_string(static_cast<long long>(bytes * 1e-6)) + " MB, and there are " +
@@ -173,8 +167,8 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
       const glm::dvec2 offset(number * 0.7548776662466927, number * 0.5698402909980532);
       found[axis] = crossingsAlong(LineGrid(surfaces, along[axis], line_area, offset - glm::floor(offset)), work);
       forLinks(
-          found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t, std::size_t) { ++links.met[side]; },
-          [&](std::uint32_t side, std::uint16_t, std::size_t) { ++links.outside[side]; });
+          found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t) { ++links.met[side]; },
+          [&](std::uint32_t side, std::uint16_t) { ++links.outside[side]; });
     }
   });
 
@@ -191,38 +185,19 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
     return sum;
   };
   exchange.sees.resize(starts(exchange.first, &ChunkLinks::met));
-  exchange.seen_at.resize(exchange.sees.size());
   exchange.outside.resize(starts(exchange.first_outside, &ChunkLinks::outside));
-  exchange.outside_at.resize(exchange.outside.size());
-  std::vector<std::size_t> first_crossing{0};
-  for (const AxisCrossings& axis : found) first_crossing.push_back(first_crossing.back() + axis.sides.size());
-  require(first_crossing.back() < std::numeric_limits<std::uint32_t>::max(), "crossings of all lines",
-          first_crossing.back(), "below 2^32: of fewer leaves or lines");
-  exchange.places.resize(first_crossing.back());
-  exchange.crossed.resize(first_crossing.back());
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
     ChunkLinks& links = chunks[chunk];
     const auto [begin, end] = axesOfChunk(chunk);
-    for (std::size_t axis = begin; axis < end; ++axis) {
-      const std::size_t before = first_crossing[axis];
+    for (std::size_t axis = begin; axis < end; ++axis)
       forLinks(
           found[axis], axis, axes,
-          [&](std::uint32_t side, std::uint32_t source, std::size_t crossing) {
-            const std::uint64_t at = exchange.first[side] + links.met[side]++;
-            exchange.sees[at] = source;
-            exchange.seen_at[at] = static_cast<std::uint32_t>(before + crossing);
+          [&](std::uint32_t side, std::uint32_t source) {
+            exchange.sees[exchange.first[side] + links.met[side]++] = source;
           },
-          [&](std::uint32_t side, std::uint16_t direction, std::size_t crossing) {
-            const std::uint64_t at = exchange.first_outside[side] + links.outside[side]++;
-            exchange.outside[at] = direction;
-            exchange.outside_at[at] = static_cast<std::uint32_t>(before + crossing);
+          [&](std::uint32_t side, std::uint16_t direction) {
+            exchange.outside[exchange.first_outside[side] + links.outside[side]++] = direction;
           });
-      std::copy(found[axis].places.begin(), found[axis].places.end(),
-                exchange.places.begin() + static_cast<std::ptrdiff_t>(before));
-      for (std::size_t i = 0; i < found[axis].sides.size(); ++i)
-        exchange.crossed[before + i] = (found[axis].sides[i] & ~kFirstOnLine) / 2;
-      found[axis].places = {};
-    }
   });
   exchange.lines.resize(elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i)

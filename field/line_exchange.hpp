@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,15 +29,11 @@ struct LineExchange {
   // something, sees[first[side]] up to sees[first[side + 1]].
   std::vector<std::uint64_t> first;
   std::vector<std::uint32_t> sees;
-  std::vector<std::uint32_t> seen_at;  // the crossing at which each of them is seen
-  std::vector<std::uint32_t> lines;    // of each element: those that cross it; as many come to either side
+  std::vector<std::uint32_t> lines;  // of each element: those that cross it; as many come to either side
   // Of each side, the directions in which light comes to it from outside, as first and sees.
   std::vector<std::uint64_t> first_outside;
   std::vector<std::uint16_t> outside;
-  std::vector<std::uint32_t> outside_at;  // the side's crossing from which each of them is seen
   std::vector<std::uint32_t> below;       // of each side, those of them that rise: from the ground
-  std::vector<glm::vec3> places;          // of each crossing [m]; in a periodic stand in any of its periods
-  std::vector<std::uint32_t> crossed;     // the element that it crosses
   std::vector<Direction> directions;      // in which light travels: along each axis, then against it
   std::vector<std::uint64_t> free_lines;  // with a period: of each axis, lines that meet nothing
   std::uint64_t all_lines = 0;            // with a period: of all axes

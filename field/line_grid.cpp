@@ -38,57 +38,43 @@ Crossing64 crossing64(float depth, std::uint32_t side) {
   return Crossing64{bits & kSign ? ~bits : bits | kSign} << 32 | side;
 }
 
-float depthOf(Crossing64 crossing) {
-  constexpr std::uint32_t kSign = 1u << 31;
-  const auto bits = static_cast<std::uint32_t>(crossing >> 32);
-  return std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits);
-}
-
 // (F2)
 LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset)
     : surfaces_(surfaces) {
   const std::vector<glm::vec3>& vertices = surfaces.mesh->vertices;
   projected_.resize(vertices.size());
-  const glm::dvec3 s(along);
+  glm::vec3 right, up, depth;  // rows of the map from space to pixels
   if (surfaces.period) {
     const glm::dvec2 period(*surfaces.period);
-    frame_.repeats = true;
-    frame_.size = wholePixels(period, period.x * period.y * std::abs(s.z) / area);
-    line_area_ = period.x * period.y * std::abs(s.z) / (static_cast<double>(frame_.size.x) * frame_.size.y);
-    const glm::dvec2 scale = glm::dvec2(frame_.size) / period;
-    frame_.right = scale.x * glm::dvec3(1., 0., -s.x / s.z);
-    frame_.up = scale.y * glm::dvec3(0., 1., -s.y / s.z);
-    frame_.depth = {0., 0., 1. / s.z};
-    frame_.along_right = {1. / scale.x, 0., 0.};
-    frame_.along_up = {0., 1. / scale.y, 0.};
-    frame_.along = s;
-    mirrored_ = s.z < 0.;
+    const double rise = std::abs(double{along.z});
+    size_ = wholePixels(period, period.x * period.y * rise / area);
+    line_area_ = period.x * period.y * rise / (static_cast<double>(size_.x) * size_.y);
+    const glm::vec2 scale = glm::vec2(glm::dvec2(size_) / period);
+    right = scale.x * glm::vec3(1.f, 0.f, -along.x / along.z);
+    up = scale.y * glm::vec3(0.f, 1.f, -along.y / along.z);
+    depth = {0.f, 0.f, 1.f / along.z};
+    mirrored_ = along.z < 0.f;
   } else {
     const Axes axes = axesAlong(along);
-    const double pixel = std::sqrt(area);
-    frame_.right = glm::dvec3(axes.right) / pixel;
-    frame_.up = glm::dvec3(axes.up) / pixel;
-    frame_.depth = s;
-    frame_.along_right = pixel * glm::dvec3(axes.right);
-    frame_.along_up = pixel * glm::dvec3(axes.up);
-    frame_.along = s;
+    const auto scale = static_cast<float>(1. / std::sqrt(area));
+    right = scale * axes.right;
+    up = scale * axes.up;
+    depth = axes.along;
     line_area_ = area;
   }
-  const glm::vec3 right(frame_.right), up(frame_.up), depth(frame_.depth);
   Bounds box;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     projected_[i] = {glm::dot(vertices[i], right), glm::dot(vertices[i], up), glm::dot(vertices[i], depth)};
     box.include(projected_[i]);
   }
   if (surfaces.period) {
-    // The corner is a whole number of periods away, so that pixels are counted from the same place everywhere.
-    const glm::dvec2 size(frame_.size);
+    // The corner is a whole number of periods away, so that pixels of all directions are counted from the same place.
+    const glm::dvec2 size(size_);
     pixels_.corner = size * glm::floor((glm::dvec2(box.low) - offset) / size) + offset;
   } else {
     pixels_.corner = glm::floor(glm::dvec2(box.low) - offset) + offset;
-    frame_.size = glm::ivec2(glm::ceil(glm::dvec2(box.high) - pixels_.corner)) + 1;
+    size_ = glm::ivec2(glm::ceil(glm::dvec2(box.high) - pixels_.corner)) + 1;
   }
-  frame_.corner = pixels_.corner;
   pixels_.pixels_per_metre = 1.;
   const glm::ivec2 whole = glm::ivec2(glm::ceil(glm::dvec2(box.high) - pixels_.corner)) + 1;
   pixels_.columns = whole.x;

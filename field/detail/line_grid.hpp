@@ -11,7 +11,6 @@
 #include "core/directions.hpp"
 #include "core/tree_mesh.hpp"
 #include "field/elements.hpp"
-#include "field/line_frame.hpp"
 #include "grid/detail/scan_conversion.hpp"
 
 // Parallel lines through a stand, one through each pixel of a grid across them, and where they cross its elements.
@@ -25,7 +24,6 @@ inline std::uint32_t sideMet(Crossing64 crossing) {
   return static_cast<std::uint32_t>(crossing);
 }
 Crossing64 crossing64(float depth, std::uint32_t side);
-float depthOf(Crossing64 crossing);  // [m]
 
 // Sides of a stand's elements.
 struct StandSurfaces {
@@ -43,10 +41,8 @@ class LineGrid {
   LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset);
 
   double lineArea() const { return line_area_; }  // [m^2]
-  std::size_t lines() const {
-    return static_cast<std::size_t>(frame_.size.x) * static_cast<std::size_t>(frame_.size.y);
-  }
-  const LineFrame& frame() const { return frame_; }
+  std::size_t lines() const { return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y); }
+  glm::ivec2 size() const { return size_; }
 
   // Triangles of the stand: those of leaves, then those of wood.
   std::size_t triangles() const;
@@ -78,12 +74,12 @@ class LineGrid {
       for (const Span& span : std::span(work).first(scanned.spans)) {
         const std::size_t triangle = begin + span.triangle;
         const std::uint32_t side = 2 * elements[triangle] + !fromFront(triangles[triangle]);
-        const auto row = static_cast<std::size_t>(span.row) % static_cast<std::size_t>(frame_.size.y);
-        auto column = span.column % static_cast<std::uint32_t>(frame_.size.x);
+        const auto row = static_cast<std::size_t>(span.row) % static_cast<std::size_t>(size_.y);
+        auto column = span.column % static_cast<std::uint32_t>(size_.x);
         for (std::uint32_t i = 0; i < span.length; ++i) {
-          put(row * static_cast<std::size_t>(frame_.size.x) + column,
+          put(row * static_cast<std::size_t>(size_.x) + column,
               crossing64(span.depth + static_cast<float>(i) * span.slope, side));
-          if (++column == static_cast<std::uint32_t>(frame_.size.x)) column = 0;
+          if (++column == static_cast<std::uint32_t>(size_.x)) column = 0;
         }
       }
       begin += scanned.triangles;
@@ -94,7 +90,7 @@ class LineGrid {
   std::vector<glm::vec3> projected_;  // of the vertices: right, up [pixel], depth [m]
   bool mirrored_ = false;             // whether right, up and depth are left-handed
   PixelGrid pixels_{};                // of the stand; with a period they may go round it several times
-  LineFrame frame_;
+  glm::ivec2 size_{0};
   double line_area_ = 0.;
   ScanConversion scan_ = scanConversion();
 };
