@@ -14,6 +14,7 @@
 #include "core/require.hpp"
 #include "field/anderson.hpp"
 #include "field/detail/cell_exchange.hpp"
+#include "field/detail/sweep_row.hpp"
 
 namespace sunfleck {
 namespace {
@@ -121,6 +122,7 @@ GridField::GridField(CellMedium medium, std::span<const float> clumping, const S
     fullness_[i] = 2.f * kPi / sum;
   });
   clumping_.resize(slots);
+  staying_.resize(slots);
   const std::size_t pairs = ordinates_.rows() / 2;
   extinction_.resize(pairs * slots * kLanes);
   forEach(slots, 16, [&](std::size_t slot) {
@@ -136,6 +138,14 @@ GridField::GridField(CellMedium medium, std::span<const float> clumping, const S
     std::vector<float> sigma(pairs * kLanes);
     detail::cellExchange().extinction(half.rows(), {medium_.normal.data(), fullness_.data()}, begin, end,
                                       clumping_[slot] / medium_.grid.volume(), sigma.data());
+    double sent = 0., met = 0.;
+    for (std::size_t i = 0; i < sigma.size(); ++i) {
+      const glm::vec3 out = glm::abs(ordinates_.direction(i)) / (detail::kOutwardShare * medium_.grid.side);
+      const double weight = double{half.weight[i] * sigma[i]};
+      sent += weight;
+      met += sigma[i] > 0.f ? weight * double{sigma[i] / (sigma[i] + out.x + out.y + out.z)} : 0.;
+    }
+    staying_[slot] = 1.f - clumping_[slot] + (sent > 0. ? clumping_[slot] * static_cast<float>(met / sent) : 0.f);
     for (std::size_t row = 0; row < pairs; ++row)
       std::copy_n(sigma.data() + row * kLanes, kLanes, extinction_.data() + (row * slots + slot) * kLanes);
   });
@@ -330,6 +340,42 @@ void GridField::step(State& state, const GridLight& light) {
   });
 }
 
+// (F18) Adds to g, made of x by a step, what the leaves of each cell would go on to exchange among themselves of the
+// change. It leaves a fixed point where it is, and spares dense cells the steps that this would take.
+void GridField::settleCells(const GridLight& light, std::size_t band, std::span<const float> x,
+                            std::span<float> g) const {
+  const std::size_t slots = medium_.grid.cells.size();
+  std::vector<float> more(slots);
+  forEach(slots, 64, [&](std::size_t slot) {
+    double area = 0., scattered = 0., change = 0.;
+    for (std::uint32_t i = medium_.first_piece[slot]; i < medium_.first_piece[slot + 1]; ++i) {
+      const CellPiece& piece = medium_.pieces[i];
+      const std::size_t front = 2 * std::size_t{piece.element};
+      const std::uint32_t material = medium_.material[piece.element];
+      const double share = piece.area;
+      area += share;
+      scattered += share * double{albedo(light.optics[band][material / 2], material % 2 == 1)};
+      change += 0.5 * share * double{(g[front] - x[front]) + (g[front + 1] - x[front + 1])};
+    }
+    const double again = area > 0. ? double{staying_[slot]} * scattered / area : 0.;
+    if (again < 1.) more[slot] = static_cast<float>(change / std::max(area, 1e-30) * again / (1. - again));
+  });
+  std::vector<std::uint32_t> slot_of(medium_.pieces.size());
+  forEach(slots, 64, [&](std::size_t slot) {
+    std::fill(slot_of.begin() + medium_.first_piece[slot], slot_of.begin() + medium_.first_piece[slot + 1],
+              static_cast<std::uint32_t>(slot));
+  });
+  forEach(medium_.area.size(), 1024, [&](std::size_t i) {
+    float sum = 0.f;
+    for (std::uint32_t p = medium_.first_of[i]; p < medium_.first_of[i + 1]; ++p) {
+      const std::size_t piece = medium_.of_element[p];
+      sum += medium_.pieces[piece].area * more[slot_of[piece]];
+    }
+    g[2 * i] += sum / medium_.area[i];
+    g[2 * i + 1] += sum / medium_.area[i];
+  });
+}
+
 // (F17)
 GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) {
   validate(light);
@@ -404,6 +450,7 @@ GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) 
       break;
     }
     for (std::size_t band = 0; band < bands; ++band) {
+      settleCells(light, band, values[band], found[band]);
       mixers[band].next(values[band], found[band]);
       scatter(band, values[band]);
     }
