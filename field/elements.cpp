@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 namespace sunfleck {
 namespace {
@@ -70,18 +70,6 @@ std::uint32_t addElement(FieldElements& elements, std::uint32_t leaf) {
   return static_cast<std::uint32_t>(elements.size() - 1);
 }
 
-// Wood triangles in an order in which those that become one element stand together.
-struct WoodKey {
-  glm::ivec3 cell;
-  int facing;  // the axis that the normal is nearest to, and its sign
-  std::uint32_t triangle;
-  auto operator<=>(const WoodKey& other) const {
-    return std::tie(cell.z, cell.y, cell.x, facing, triangle) <=>
-           std::tie(other.cell.z, other.cell.y, other.cell.x, other.facing, other.triangle);
-  }
-  bool together(const WoodKey& other) const { return cell == other.cell && facing == other.facing; }
-};
-
 int facingOf(const glm::vec3& vector) {
   const glm::vec3 size = glm::abs(vector);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -90,20 +78,23 @@ int facingOf(const glm::vec3& vector) {
 
 void addWood(FieldElements& elements, const TreeMesh& mesh, float cell_size) {
   const std::vector<Surface> surfaces = surfacesOf(mesh, mesh.wood_triangles);
-  std::vector<WoodKey> keys;
-  keys.reserve(surfaces.size());
-  for (std::size_t i = 0; i < surfaces.size(); ++i)
-    keys.push_back({glm::ivec3(glm::floor(surfaces[i].centre / cell_size)), facingOf(surfaces[i].vector),
-                    static_cast<std::uint32_t>(i)});
+  // Cell and facing in one number; 19 bits for a cell's place along an axis reach far beyond any mesh.
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(surfaces.size());
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      key = key << 19 |
+            (static_cast<std::uint64_t>(std::floor(surfaces[i].centre[axis] / cell_size) + 262'144.f) & 0x7ffff);
+    keys[i] = {key << 3 | static_cast<std::uint64_t>(facingOf(surfaces[i].vector)), static_cast<std::uint32_t>(i)};
+  }
   std::sort(keys.begin(), keys.end());
   elements.of_wood_triangle.resize(surfaces.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const std::uint32_t triangle = keys[i].triangle;
-    const std::uint32_t element = i > 0 && keys[i].together(keys[i - 1])
-                                      ? static_cast<std::uint32_t>(elements.size() - 1)
-                                      : addElement(elements, FieldElements::kWood);
-    elements.of_wood_triangle[triangle] = element;
-    add(elements, element, surfaces[triangle]);
+    const bool together = i > 0 && keys[i].first == keys[i - 1].first;
+    const auto element =
+        together ? static_cast<std::uint32_t>(elements.size() - 1) : addElement(elements, FieldElements::kWood);
+    elements.of_wood_triangle[keys[i].second] = element;
+    add(elements, element, surfaces[keys[i].second]);
   }
 }
 

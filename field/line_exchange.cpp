@@ -134,13 +134,13 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   const auto axes = static_cast<std::size_t>(effort.axes);
   const double total = totalArea(elements);
   // A line crosses an element of area A turned any way with probability A / 2 per its own area.
-  const double leaf_area =
-      std::accumulate(elements.area.begin(),
-                      elements.area.begin() + static_cast<std::ptrdiff_t>(elements.leaf_elements), 0.) /
-      static_cast<double>(elements.leaf_elements);
-  const double line_area = 0.5 * leaf_area / double{effort.crossings};
+  const double leaves = std::accumulate(
+      elements.area.begin(), elements.area.begin() + static_cast<std::ptrdiff_t>(elements.leaf_elements), 0.);
+  const double area = std::min(leaves / static_cast<double>(mesh.leaf_count),
+                               2. * leaves / static_cast<double>(elements.leaf_elements));
+  const double line_area = 0.5 * area / double{effort.crossings};
   const double crossings = 0.5 * total / line_area * static_cast<double>(axes);
-  const double bytes = crossings * 14. + static_cast<double>(elements.size()) * (8. * kChunks + 40.);
+  const double bytes = crossings * 40. + static_cast<double>(elements.size()) * (8. * kChunks + 40.);
   if (const double available = availableMemory(); bytes > available)
     throw InvalidInput("the light field: must be of fewer leaves or lines: it would take " +
                        std::to_string(static_cast<long long>(bytes * 1e-6)) + " MB, and there are " +

@@ -14,8 +14,9 @@ namespace sunfleck {
 
 // How many lines exchange light.
 struct ExchangeEffort {
-  int axes = 64;          // directions of lines; light goes both ways [1]
-  float crossings = 1.f;  // of an element of mean area by the lines of one direction, in the mean [1]
+  int axes = 64;  // directions of lines; light goes both ways [1]
+  // Of a leaf of mean area by the lines of one direction, in the mean; and of an element half as many at least [1].
+  float crossings = 1.f;
 };
 
 // (F2) Who sees whom: parallel lines in directions spread evenly over the sphere, as many per area in each, and the

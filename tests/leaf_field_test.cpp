@@ -159,7 +159,7 @@ TEST(F4_LeafField, HasTheViewFactorOfSquares) {
   finish(squares, "squares");
   const auto mesh = shared(std::move(squares));
   for (const auto& [axes, crossings, allowed] :
-       {std::tuple(64, 4.f, 0.1), std::tuple(256, 16.f, 0.02), std::tuple(1024, 64.f, 0.005)}) {
+       {std::tuple(64, 8.f, 0.1), std::tuple(256, 32.f, 0.02), std::tuple(1024, 128.f, 0.005)}) {
     LeafField field =
         fieldOf(mesh, {}, {.exchange = {.axes = axes, .crossings = crossings}, .direct = {.pixels = 1e5f}});
     const FieldResult& result = field.solve(sunOn(0.f, 0.5f));
