@@ -14,6 +14,7 @@
 #include "core/require.hpp"
 #include "field/anderson.hpp"
 #include "field/detail/cell_exchange.hpp"
+#include "field/detail/sweep_row.hpp"
 
 namespace sunfleck {
 namespace {
@@ -121,6 +122,7 @@ GridField::GridField(CellMedium medium, std::span<const float> clumping, const S
     fullness_[i] = 2.f * kPi / sum;
   });
   clumping_.resize(slots);
+  staying_.resize(slots);
   const std::size_t pairs = ordinates_.rows() / 2;
   extinction_.resize(pairs * slots * kLanes);
   forEach(slots, 16, [&](std::size_t slot) {
@@ -136,6 +138,14 @@ GridField::GridField(CellMedium medium, std::span<const float> clumping, const S
     std::vector<float> sigma(pairs * kLanes);
     detail::cellExchange().extinction(half.rows(), {medium_.normal.data(), fullness_.data()}, begin, end,
                                       clumping_[slot] / medium_.grid.volume(), sigma.data());
+    double sent = 0., met = 0.;
+    for (std::size_t i = 0; i < sigma.size(); ++i) {
+      const glm::vec3 out = glm::abs(ordinates_.direction(i)) / (detail::kOutwardShare * medium_.grid.side);
+      const double weight = double{half.weight[i] * sigma[i]};
+      sent += weight;
+      met += sigma[i] > 0.f ? weight * double{sigma[i] / (sigma[i] + out.x + out.y + out.z)} : 0.;
+    }
+    staying_[slot] = 1.f - clumping_[slot] + (sent > 0. ? clumping_[slot] * static_cast<float>(met / sent) : 0.f);
     for (std::size_t row = 0; row < pairs; ++row)
       std::copy_n(sigma.data() + row * kLanes, kLanes, extinction_.data() + (row * slots + slot) * kLanes);
   });
@@ -154,61 +164,6 @@ double GridField::memoryBytes(std::size_t bands) const {
                                              : 0.;
   return Sweep::memoryBytes(medium_.grid, ordinates_, bands) + 48. * elements + 12. * pieces +
          4. * (2. * pieces * sets + 3. * state + (2. * kKept + 5.) * (state + walls));
-}
-
-// (F21)
-CellSun GridField::sunThroughCells(const Direction& along) const {
-  require(along.z < 0.f && std::abs(glm::length(along) - 1.f) < 1e-3f, "the sun's direction down", along.z,
-          "below 0 in a unit vector");
-  const SphereOrdinates beam = SphereOrdinates::beam(along);
-  Sweep sweep(medium_.grid, beam, 1);
-  const std::size_t slots = medium_.grid.cells.size();
-  const auto seen = [&](std::uint32_t element) {
-    const glm::vec3& normal = medium_.normal[element];
-    return normal == glm::vec3(0.f) ? 0.5f : std::abs(glm::dot(normal, along));
-  };
-  std::vector<float> extinction(sweep.extinctionSize()), source(sweep.size()), mean(sweep.size());
-  EnteringLight entering{.radiance = std::vector<float>(beam.size())};
-  std::size_t row = 0, lane = 0;
-  for (std::size_t i = 0; i < beam.size(); ++i)
-    if (beam.weight(i) > 0.f) {
-      row = i / kLanes;
-      lane = i % kLanes;
-      entering.radiance[i] = 1.f;
-    }
-  forEach(slots, 64, [&](std::size_t slot) {
-    double area = 0.;
-    for (std::uint32_t i = medium_.first_piece[slot]; i < medium_.first_piece[slot + 1]; ++i)
-      area += double{medium_.pieces[i].area * seen(medium_.pieces[i].element)};
-    extinction[sweep.extinctionPlace(row, slot) + lane] =
-        clumping_[slot] * static_cast<float>(area) / medium_.grid.volume();
-  });
-  // A low sun crosses a stand that repeats many times; what it still changes is of no account long before the last.
-  constexpr int most_crossings = 1000;
-  const double steady = 1e-6 * sweep.enteringPower(entering, 0);
-  for (int crossing = 0; crossing < most_crossings; ++crossing) {
-    sweep.follow(extinction, source, entering, mean);
-    if (sweep.wallChange(0) <= steady) break;
-  }
-  CellSun sun{.direct = std::vector<float>(medium_.area.size() * 2),
-              .ground = {sweep.groundIrradiance().begin(), sweep.groundIrradiance().end()}};
-  for (std::size_t slot = 0; slot < slots; ++slot) {
-    const float light = clumping_[slot] * mean[sweep.place(row, slot) + lane];
-    for (std::uint32_t i = medium_.first_piece[slot]; i < medium_.first_piece[slot + 1]; ++i) {
-      const CellPiece& piece = medium_.pieces[i];
-      const float share = light * piece.area / medium_.area[piece.element] * seen(piece.element);
-      const float back = glm::dot(medium_.normal[piece.element], along);
-      if (back <= 0.f) sun.direct[piece.element * 2] += back < 0.f ? share : 0.5f * share;
-      if (back >= 0.f) sun.direct[piece.element * 2 + 1] += back > 0.f ? share : 0.5f * share;
-    }
-  }
-  // Wood counts half of its surface from either side, but is told of with all of it.
-  for (std::size_t i = 0; i < medium_.area.size(); ++i)
-    if (medium_.material[i] % 2 == 1) {
-      sun.direct[2 * i] *= 0.5f;
-      sun.direct[2 * i + 1] *= 0.5f;
-    }
-  return sun;
 }
 
 EnteringLight GridField::evenSky(std::span<const float> sky, std::span<const float> ground,
@@ -330,6 +285,42 @@ void GridField::step(State& state, const GridLight& light) {
   });
 }
 
+// (F18) Adds to g, made of x by a step, what the leaves of each cell would go on to exchange among themselves of the
+// change. It leaves a fixed point where it is, and spares dense cells the steps that this would take.
+void GridField::settleCells(const GridLight& light, std::size_t band, std::span<const float> x,
+                            std::span<float> g) const {
+  const std::size_t slots = medium_.grid.cells.size();
+  std::vector<float> more(slots);
+  forEach(slots, 64, [&](std::size_t slot) {
+    double area = 0., scattered = 0., change = 0.;
+    for (std::uint32_t i = medium_.first_piece[slot]; i < medium_.first_piece[slot + 1]; ++i) {
+      const CellPiece& piece = medium_.pieces[i];
+      const std::size_t front = 2 * std::size_t{piece.element};
+      const std::uint32_t material = medium_.material[piece.element];
+      const double share = piece.area;
+      area += share;
+      scattered += share * double{albedo(light.optics[band][material / 2], material % 2 == 1)};
+      change += 0.5 * share * double{(g[front] - x[front]) + (g[front + 1] - x[front + 1])};
+    }
+    const double again = area > 0. ? double{staying_[slot]} * scattered / area : 0.;
+    if (again < 1.) more[slot] = static_cast<float>(change / std::max(area, 1e-30) * again / (1. - again));
+  });
+  std::vector<std::uint32_t> slot_of(medium_.pieces.size());
+  forEach(slots, 64, [&](std::size_t slot) {
+    std::fill(slot_of.begin() + medium_.first_piece[slot], slot_of.begin() + medium_.first_piece[slot + 1],
+              static_cast<std::uint32_t>(slot));
+  });
+  forEach(medium_.area.size(), 1024, [&](std::size_t i) {
+    float sum = 0.f;
+    for (std::uint32_t p = medium_.first_of[i]; p < medium_.first_of[i + 1]; ++p) {
+      const std::size_t piece = medium_.of_element[p];
+      sum += medium_.pieces[piece].area * more[slot_of[piece]];
+    }
+    g[2 * i] += sum / medium_.area[i];
+    g[2 * i + 1] += sum / medium_.area[i];
+  });
+}
+
 // (F17)
 GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) {
   validate(light);
@@ -404,6 +395,7 @@ GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) 
       break;
     }
     for (std::size_t band = 0; band < bands; ++band) {
+      settleCells(light, band, values[band], found[band]);
       mixers[band].next(values[band], found[band]);
       scatter(band, values[band]);
     }

@@ -95,11 +95,13 @@ class GridField {
   struct State;
   void validate(const GridLight& light) const;
   void step(State& state, const GridLight& light);
+  void settleCells(const GridLight& light, std::size_t band, std::span<const float> x, std::span<float> g) const;
 
   CellMedium medium_;
   SphereOrdinates ordinates_;
   std::vector<float> clumping_;    // Omega of each slot
   std::vector<float> fullness_;    // of each element: see detail/cell_exchange.hpp
+  std::vector<float> staying_;     // share of what the leaves of each slot send that they meet themselves at once
   std::vector<float> extinction_;  // of each slot, Omega included, as the sweep reads it
 };
 
