@@ -139,6 +139,7 @@ LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const 
     const std::size_t kind = geometry.kind_of_tree[tree];
     const std::span<const float> of_cells = stand.compensation(tree, 0);
     std::vector<float>& of_leaves = geometry.compensation.emplace_back();
+    if (of_cells.empty()) continue;
     of_leaves.reserve(centres[kind].size());
     for (const glm::vec3& centre : centres[kind]) of_leaves.push_back(interpolate(stand.cells(kind), of_cells, centre));
   }

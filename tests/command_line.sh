@@ -207,6 +207,15 @@ refuses "mu0 = 1e-50: must be at least 1e-07" slab --model sppr --batch grazing.
 refuses "nosuch" bench directions nosuch -o dirs
 refuses "whole number, 16 to 50000" bench stand --trees 15 -o dirs
 refuses "must not be empty" bench stand -o ""
+refuses "nosuch" bench scene nosuch -o dirs
+refuses "--reference" bench scene leaf.obj --reference 63 -o dirs
+refuses "--paths" bench scene leaf.obj --paths 1e3 nan -o dirs
+refuses "fewer than the reference's" bench scene leaf.obj --reference 1e3 --paths 1e3 -o dirs
+refuses "given once" bench scene leaf.obj --paths 1e3 1e3 -o dirs
+refuses "whole number, 1 to 1000" bench scene leaf.obj --rounds 0 -o dirs
+refuses "0, 1 or 2" bench scene leaf.obj --band 3 -o dirs
+refuses "must not be empty" bench scene leaf.obj -o ""
+refuses "enough to compare" bench scene leaf.obj --reference 1e3 -o dirs
 refuses "nosuch" bench pictures nosuch -o dirs
 refuses "must be named once" bench pictures cherry cherry -o dirs
 refuses "whole number, 2 to 65536" bench pictures --samples 1 -o dirs
@@ -431,6 +440,9 @@ does "sky light" validate leaf.obj --paths 1000 --no-pictures -o report --stats
 does "nstreamg" bench pictures leaf.obj -o benches --samples 2 --size 40 30 --field-of-view 40 --quiet
 [ -s benches/picture_bench_leaf.png ] && grep -q "^leaf,sppg," benches/picture_bench.csv || fail "bench pictures: files"
 does "picture 8 x 6" trace leaf.obj --only-picture --samples 4 --size 8 6 --date 2003-10-17T12:30:30-07:00 --place 39.74 -105.18 --field-of-view 90 --picture benches/p.png --tone-map filmic --quiet
+does "crosses Monte Carlo" bench scene maple --reference 1e4 --paths 1e2 1e3 --rounds 1 -o benches --quiet
+does '"monte_carlo_cpu_seconds"' bench scene maple --reference 1e4 --rounds 1 -o benches --quiet --json
+grep -q "^monte_carlo,2500," benches/scene_bench.csv && [ -s benches/scene_bench.svg ] || fail "bench scene: files"
 does "cherry" bench stand --trees 16 -o benches --quiet
 does '"move_tree_seconds"' bench stand --trees 16 -o benches --quiet --json
 printf 'v 0 0 0\nv 0 1 0\nv 0 1 1\nusemtl leaf\nf 1 2 3\n' >upright.obj  # the sun does not see it
@@ -544,6 +556,12 @@ kill -INT $!
 wait $!
 [ $? -eq 1 ] || fail "bench slab, interrupted: not status 1: $(head -c 400 stderr.txt)"
 [ ! -e empty_bench ] || fail "bench slab, interrupted: left a folder"
+"$program" bench scene cherry -o empty_bench/folder --quiet >/dev/null 2>stderr.txt &
+for _ in $(seq 300); do [ -e empty_bench/folder ] && break; sleep 0.1; done
+kill -INT $!
+wait $!
+[ $? -eq 1 ] || fail "bench scene, interrupted: not status 1: $(head -c 400 stderr.txt)"
+[ ! -e empty_bench ] || fail "bench scene, interrupted: left a folder"
 set +m
 # A batch that is interrupted writes all (0) or nothing.
 for delay in 0.02 0.05 0.1; do

@@ -15,22 +15,6 @@ double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
 }
 
-// Noise of category means adds in squares over their leaves.
-std::optional<double> categoryNoise(const ForwardResult& reference, std::span<const Category> categories) {
-  double variance = 0., squares = 0.;
-  for (const Category& category : categories) {
-    double sum = 0., sum_variance = 0.;
-    for (const std::uint32_t leaf : category.leaves) {
-      sum += reference.leaf_irradiance[leaf];
-      sum_variance += reference.leaf_standard_error[leaf] * reference.leaf_standard_error[leaf];
-    }
-    const auto n = static_cast<double>(category.leaves.size());
-    variance += sum_variance / n;
-    squares += sum * sum / n;
-  }
-  return squares > 0. ? std::optional(std::sqrt(variance / squares)) : std::nullopt;
-}
-
 }  // namespace
 
 std::vector<std::vector<TraceLight>> traceLightsOfSuns(const Scene& scene, const std::vector<int>& bands) {
@@ -128,7 +112,8 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
   result.categories = categories(result.depths);
   result.leaves_left_out = result.leaves;
   for (const Category& category : result.categories) result.leaves_left_out -= category.leaves.size();
-  result.category_noise = categoryNoise(result.reference, result.categories);
+  result.category_noise =
+      categoryNoise(result.reference.leaf_irradiance, result.reference.leaf_standard_error, result.categories);
 
   for (const Model model : kModels) {
     ModelResult& of_model = result.models.emplace_back();
