@@ -1,0 +1,152 @@
+#include "field/elements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numeric>
+#include <tuple>
+
+namespace sunfleck {
+namespace {
+
+struct Surface {
+  glm::vec3 centre, vector;  // of a triangle [m], and its normal times its area [m^2]
+  float area;                // [m^2]
+};
+
+Surface surfaceOf(const TreeMesh& mesh, const glm::uvec3& triangle) {
+  const glm::vec3 &a = mesh.vertices[triangle.x], &b = mesh.vertices[triangle.y], &c = mesh.vertices[triangle.z];
+  const glm::vec3 vector = 0.5f * glm::cross(b - a, c - a);
+  return {(a + b + c) / 3.f, vector, glm::length(vector)};
+}
+
+std::vector<Surface> surfacesOf(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles) {
+  std::vector<Surface> surfaces;
+  surfaces.reserve(triangles.size());
+  for (const glm::uvec3& triangle : triangles) surfaces.push_back(surfaceOf(mesh, triangle));
+  return surfaces;
+}
+
+// Leaves that become single elements.
+struct WholeLeaves {
+  std::vector<char> whole;
+  float mean_free_path;
+};
+
+// Lines cross 1/2 leaf area per volume, where leaves are turned every way; the crown is taken for the ellipsoid in its
+// box.
+WholeLeaves wholeLeaves(const TreeMesh& mesh, const std::vector<Surface>& surfaces, const ElementRule& rule) {
+  std::vector<Surface> leaves(mesh.leaf_count, Surface{glm::vec3(0.f), glm::vec3(0.f), 0.f});
+  std::vector<Bounds> boxes(mesh.leaf_count);
+  double total = 0.;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const std::uint32_t leaf = mesh.leaf_of_triangle[i];
+    leaves[leaf].vector += surfaces[i].vector;
+    leaves[leaf].area += surfaces[i].area;
+    total += double{surfaces[i].area};
+    for (int corner = 0; corner < 3; ++corner) boxes[leaf].include(mesh.vertices[mesh.leaf_triangles[i][corner]]);
+  }
+  const glm::vec3 size = glm::max(leafBounds(mesh).size(), glm::vec3(1e-6f));
+  WholeLeaves result{std::vector<char>(mesh.leaf_count),
+                     static_cast<float>(2. * 0.5236 * double{size.x} * double{size.y} * double{size.z} / total)};
+  for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf)
+    result.whole[leaf] = glm::length(leaves[leaf].vector) >= rule.least_flatness * leaves[leaf].area &&
+                         glm::length(boxes[leaf].size()) <= rule.largest_extent * result.mean_free_path;
+  return result;
+}
+
+void add(FieldElements& elements, std::uint32_t element, const Surface& surface) {
+  elements.area[element] += surface.area;
+  elements.centre[element] += surface.area * surface.centre;
+  elements.normal[element] += surface.vector;
+}
+
+std::uint32_t addElement(FieldElements& elements, std::uint32_t leaf) {
+  elements.area.push_back(0.f);
+  elements.centre.emplace_back(0.f);
+  elements.normal.emplace_back(0.f);
+  elements.leaf.push_back(leaf);
+  return static_cast<std::uint32_t>(elements.size() - 1);
+}
+
+// Wood triangles in an order in which those that become one element stand together.
+struct WoodKey {
+  glm::ivec3 cell;
+  int facing;  // the axis that the normal is nearest to, and its sign
+  std::uint32_t triangle;
+  auto operator<=>(const WoodKey& other) const {
+    return std::tie(cell.z, cell.y, cell.x, facing, triangle) <=>
+           std::tie(other.cell.z, other.cell.y, other.cell.x, other.facing, other.triangle);
+  }
+  bool together(const WoodKey& other) const { return cell == other.cell && facing == other.facing; }
+};
+
+int facingOf(const glm::vec3& vector) {
+  const glm::vec3 size = glm::abs(vector);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  return 2 * axis + (vector[axis] < 0.f);
+}
+
+void addWood(FieldElements& elements, const TreeMesh& mesh, float cell_size) {
+  const std::vector<Surface> surfaces = surfacesOf(mesh, mesh.wood_triangles);
+  std::vector<WoodKey> keys;
+  keys.reserve(surfaces.size());
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    keys.push_back({glm::ivec3(glm::floor(surfaces[i].centre / cell_size)), facingOf(surfaces[i].vector),
+                    static_cast<std::uint32_t>(i)});
+  std::sort(keys.begin(), keys.end());
+  elements.of_wood_triangle.resize(surfaces.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const std::uint32_t triangle = keys[i].triangle;
+    const std::uint32_t element = i > 0 && keys[i].together(keys[i - 1])
+                                      ? static_cast<std::uint32_t>(elements.size() - 1)
+                                      : addElement(elements, FieldElements::kWood);
+    elements.of_wood_triangle[triangle] = element;
+    add(elements, element, surfaces[triangle]);
+  }
+}
+
+}  // namespace
+
+// (F1)
+FieldElements fieldElements(const TreeMesh& mesh, const ElementRule& rule) {
+  FieldElements elements;
+  const std::vector<Surface> surfaces = surfacesOf(mesh, mesh.leaf_triangles);
+  const WholeLeaves leaves = wholeLeaves(mesh, surfaces, rule);
+  elements.mean_free_path = leaves.mean_free_path;
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> of_leaf(mesh.leaf_count, kNone);
+  double leaf_area = 0.;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const std::uint32_t leaf = mesh.leaf_of_triangle[i];
+    std::uint32_t element = of_leaf[leaf];
+    if (element == kNone || !leaves.whole[leaf]) of_leaf[leaf] = element = addElement(elements, leaf);
+    elements.of_leaf_triangle.push_back(element);
+    add(elements, element, surfaces[i]);
+    leaf_area += double{surfaces[i].area};
+  }
+  elements.leaf_elements = elements.size();
+  const double mean_leaf = leaf_area / std::max(1., static_cast<double>(mesh.leaf_count));
+  addWood(elements, mesh, std::max(rule.wood_patch * static_cast<float>(std::sqrt(mean_leaf)), 1e-4f));
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    elements.centre[i] /= elements.area[i];
+    const float length = glm::length(elements.normal[i]);
+    elements.normal[i] = length > 0.f ? elements.normal[i] / length : glm::vec3(0.f, 0.f, 1.f);
+  }
+  return elements;
+}
+
+std::vector<float> leafMeans(const FieldElements& elements, std::size_t leaves, std::span<const float> of_elements) {
+  std::vector<double> sums(leaves), areas(leaves);
+  for (std::size_t i = 0; i < elements.leaf_elements; ++i) {
+    sums[elements.leaf[i]] += double{elements.area[i]} * double{of_elements[i]};
+    areas[elements.leaf[i]] += double{elements.area[i]};
+  }
+  std::vector<float> means(leaves);
+  for (std::size_t leaf = 0; leaf < leaves; ++leaf)
+    means[leaf] = areas[leaf] > 0. ? static_cast<float>(sums[leaf] / areas[leaf]) : 0.f;
+  return means;
+}
+
+}  // namespace sunfleck
