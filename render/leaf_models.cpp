@@ -44,6 +44,7 @@ class ModelPowers {
                   std::span<float> up) const {
     switch (model_) {
       case Model::ss:
+      case Model::field:
         for (std::size_t i = 0; i < depth.size(); ++i) {
           down[i] = spp::directPower(depth[i], kMu0);
           up[i] = 0.f;

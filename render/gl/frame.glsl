@@ -27,7 +27,7 @@ layout(std140, binding = 0) uniform Frame {
 // A tree of the stand.
 struct Tree {
   vec4 position;  // xyz [m]
-  uvec4 kind;     // x: its kind; y: its block of cells, kNone: none
+  uvec4 kind;     // x: its kind; y: its block of cells; z: its first texel of the field; kNone: none
 };
 layout(std430, binding = 0) readonly buffer Trees { Tree trees[]; };
 

@@ -12,6 +12,11 @@ layout(binding = 7) uniform usamplerBuffer triangles;  // two texels of bits for
 layout(binding = 8) uniform sampler2D sky_radiance;   // rows from the zenith down [1/sr]
 layout(binding = 9) uniform sampler2D ground_sky;     // irradiance of the ground by the sky, per band [1]
 
+#ifdef FIELD
+layout(binding = 10) uniform usamplerBuffer field_places;  // of each triangle, as `triangles`
+layout(binding = 11) uniform samplerBuffer field_light;    // irradiance of the front and the back of each place
+#endif
+
 layout(location = 0) out vec4 total;  // rgb: radiance; a: coverage by trees and ground
 #ifdef LAYERS
 layout(location = 1) out vec4 direct;
@@ -51,6 +56,14 @@ void addSky(Surface surface, vec3 radiance) {
   sky_sum = shaded.direct + shaded.single + shaded.multiple;
 }
 
+#ifdef FIELD
+void addField(Surface surface, int place, bool front) {
+  int same = 2 * place + (front ? 0 : 1), other = 2 * place + (front ? 1 : 0);
+  light_sum.multiple +=
+      shadeBySides(surface, texelFetch(field_light, same).rgb, texelFetch(field_light, other).rgb).multiple;
+}
+#endif
+
 void shadeTree(uvec2 id, Sight look) {
   vec3 stands_here = drawn[id.x].position;
   uint tree = id.x % counts.y;
@@ -63,7 +76,8 @@ void shadeTree(uvec2 id, Sight look) {
   vec3 from = look.from - stands_here;
   float away = (plane.w - dot(normal, from)) / dot(normal, look.along);
   vec3 place = from + away * look.along;
-  if (dot(normal, look.along) > 0.0) normal = -normal;
+  bool front = dot(normal, look.along) <= 0.0;
+  if (!front) normal = -normal;
 
   bool wood = of_piece.w >= kThinWood;
   uint leaf = wood ? kNoLeaf : of_piece.w;
@@ -81,7 +95,13 @@ void shadeTree(uvec2 id, Sight look) {
     float compensation = NEEDS_COMPENSATION ? compensationAt(lit, tree, light) : 1.0;
     addLight(shadeByLight(surface, foliage, thickness, compensation, light), light, foliage, compensation);
   }
+#ifdef FIELD
+  // Wood has light outside alone, whichever way pieces of it that stand for more are turned.
+  if (trees[tree].kind.z != kNone)
+    addField(surface, int(trees[tree].kind.z / 2u + texelFetch(field_places, triangle / 2).r), front || wood);
+#else
   if (counts.w > 0u) addSky(surface, skyLightAt(lit, tree));
+#endif
 #ifdef LAYERS
   geometry = vec4(normal, dot(away * look.along, sight.xyz));
   ids = uvec4(id, kind, leaf);

@@ -49,6 +49,9 @@ Sent StandData::update(const DrawnStand& stand) {
   sent.maps = maps_.update(stand);
   sent.cells = cells_.update(stand);
   sent.sky = updateSky(stand);
+  std::vector<const TreeLevels*> levels;
+  for (const Kind& kind : kinds_) levels.push_back(&kind.levels);
+  sent.field = field_.update(stand, levels);
   sent.trees = updateTrees(stand);
   placeGround(stand);
   sent.trees += sendGrids(stand);
@@ -132,7 +135,7 @@ std::size_t StandData::updateTrees(const DrawnStand& stand) {
   std::vector<TreeData> trees;
   for (std::size_t tree = 0; tree < stand.trees.size(); ++tree)
     trees.push_back({.position = glm::vec4(stand.trees[tree].position, 0.f),
-                     .kind = {stand.trees[tree].kind, cells_.block(tree), 0u, 0u}});
+                     .kind = {stand.trees[tree].kind, cells_.block(tree), field_.first(tree), 0u}});
   std::vector<DrawnData> drawn;
   for (Kind& kind : kinds_) kind.drawn.clear();
   box_ = {};
@@ -228,6 +231,7 @@ void StandData::bind() const {
   triangles_.bind(7);
   sky_.bind(8);
   ground_sky_.bind(9);
+  field_.bind(10, 11);
 }
 
 }  // namespace sunfleck::gl

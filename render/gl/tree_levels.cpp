@@ -31,8 +31,8 @@ std::vector<glm::vec3> middlesOf(const TreeMesh& mesh, const std::vector<double>
   return middles;
 }
 
-LevelTriangle asItIs(const TreeMesh& mesh, const glm::uvec3& triangle) {
-  LevelTriangle result;
+LevelTriangle asItIs(const TreeMesh& mesh, const glm::uvec3& triangle, std::size_t source) {
+  LevelTriangle result{.source = static_cast<std::uint32_t>(source)};
   for (std::size_t corner = 0; corner < 3; ++corner) {
     result.shared[corner] = triangle[static_cast<int>(corner)];
     result.corners[corner] = mesh.vertices[result.shared[corner]];
@@ -54,7 +54,7 @@ TreeLevels treeLevels(const TreeMesh& mesh) {
     for (std::size_t t = 0; t < mesh.leaf_triangles.size(); ++t) {
       const std::uint32_t leaf = mesh.leaf_of_triangle[t];
       if (enlargement[leaf] == 0.f) continue;
-      LevelTriangle triangle = asItIs(mesh, mesh.leaf_triangles[t]);
+      LevelTriangle triangle = asItIs(mesh, mesh.leaf_triangles[t], t);
       if (enlargement[leaf] != 1.f)
         for (glm::vec3& corner : triangle.corners)
           corner = middles[leaf] + enlargement[leaf] * (corner - middles[leaf]);
@@ -67,7 +67,8 @@ TreeLevels treeLevels(const TreeMesh& mesh) {
   };
   addLeaves(0.);
   std::vector<LevelTriangle> wood;
-  for (const glm::uvec3& triangle : mesh.wood_triangles) wood.push_back(asItIs(mesh, triangle));
+  for (const glm::uvec3& triangle : mesh.wood_triangles)
+    wood.push_back(asItIs(mesh, triangle, mesh.leaf_triangles.size() + wood.size()));
   builder.add(levels.wood, wood, mesh.vertices.size(), 0.f);
 
   const double all = std::accumulate(areas.begin(), areas.end(), 0.),
