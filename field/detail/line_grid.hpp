@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/directions.hpp"
+#include "core/tree_mesh.hpp"
+#include "field/elements.hpp"
+#include "grid/detail/scan_conversion.hpp"
+
+// Parallel lines through a stand, one through each pixel of a grid across them, and where they cross its elements.
+namespace sunfleck::detail {
+
+// A place where a line crosses an element, as a number that is greater the farther it lies along the line: its depth in
+// the upper half, and in the lower the number of the side that the line comes to, 2 element for the front and
+// 2 element + 1 for the back.
+using Crossing64 = std::uint64_t;
+inline std::uint32_t sideMet(Crossing64 crossing) {
+  return static_cast<std::uint32_t>(crossing);
+}
+Crossing64 crossing64(float depth, std::uint32_t side);
+
+// Sides of a stand's elements.
+struct StandSurfaces {
+  const TreeMesh* mesh;
+  const FieldElements* elements;
+  std::optional<glm::vec2> period;  // side lengths of the repeated rectangle [m]
+};
+
+// The lines of one direction. Without period their pixels are square and cover the stand across the direction; with
+// one, they cover a period as the direction sees it from the ground, and lines repeat as the stand does.
+class LineGrid {
+ public:
+  //   area    that each line stands for, across it [m^2]; with a period as near as whole numbers of pixels come to it
+  //   offset  of the pixels' grid, in pixels [1], 0 .. 1
+  LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset);
+
+  double lineArea() const { return line_area_; }  // [m^2]
+  std::size_t lines() const { return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y); }
+  glm::ivec2 size() const { return size_; }
+
+  // Triangles of the stand: those of leaves, then those of wood.
+  std::size_t triangles() const;
+  // Calls put(line, crossing) for each crossing of triangles [begin, end).
+  template <typename Put>
+  void cross(std::size_t begin, std::size_t end, std::vector<Span>& work, const Put& put) const {
+    const std::size_t leaves = surfaces_.mesh->leaf_triangles.size();
+    crossOf(surfaces_.mesh->leaf_triangles, surfaces_.elements->of_leaf_triangle, std::min(begin, leaves),
+            std::min(end, leaves), work, put);
+    crossOf(surfaces_.mesh->wood_triangles, surfaces_.elements->of_wood_triangle, std::max(begin, leaves) - leaves,
+            std::max(end, leaves) - leaves, work, put);
+  }
+
+ private:
+  // Whether a line comes to a triangle from its front.
+  bool fromFront(const glm::uvec3& triangle) const {
+    const glm::vec3 &a = projected_[triangle.x], &b = projected_[triangle.y], &c = projected_[triangle.z];
+    return ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) < 0.f) != mirrored_;
+  }
+
+  template <typename Put>
+  void crossOf(const std::vector<glm::uvec3>& triangles, const std::vector<std::uint32_t>& elements, std::size_t begin,
+               std::size_t end, std::vector<Span>& work, const Put& put) const {
+    constexpr std::size_t kRoom = 4096;
+    work.resize(std::max(kRoom, static_cast<std::size_t>(pixels_.rows)));
+    while (begin < end) {
+      const Scanned scanned =
+          scan_(pixels_, projected_.data(), &triangles[begin], end - begin, work.data(), work.size());
+      for (const Span& span : std::span(work).first(scanned.spans)) {
+        const std::size_t triangle = begin + span.triangle;
+        const std::uint32_t side = 2 * elements[triangle] + !fromFront(triangles[triangle]);
+        const auto row = static_cast<std::size_t>(span.row) % static_cast<std::size_t>(size_.y);
+        auto column = span.column % static_cast<std::uint32_t>(size_.x);
+        for (std::uint32_t i = 0; i < span.length; ++i) {
+          put(row * static_cast<std::size_t>(size_.x) + column,
+              crossing64(span.depth + static_cast<float>(i) * span.slope, side));
+          if (++column == static_cast<std::uint32_t>(size_.x)) column = 0;
+        }
+      }
+      begin += scanned.triangles;
+    }
+  }
+
+  StandSurfaces surfaces_;
+  std::vector<glm::vec3> projected_;  // of the vertices: right, up [pixel], depth [m]
+  bool mirrored_ = false;             // whether right, up and depth are left-handed
+  PixelGrid pixels_{};                // of the stand; with a period they may go round it several times
+  glm::ivec2 size_{0};
+  double line_area_ = 0.;
+  ScanConversion scan_ = scanConversion();
+};
+
+}  // namespace sunfleck::detail

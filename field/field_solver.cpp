@@ -1,0 +1,491 @@
+#include "field/field_solver.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/require.hpp"
+
+namespace sunfleck {
+namespace {
+
+constexpr std::size_t kLanes = 4;  // problems solved side by side
+typedef float Lanes __attribute__((vector_size(4 * kLanes)));
+using Sums = std::array<double, kLanes>;
+
+constexpr std::size_t kBlock = 512;  // elements that are worth a task, and whose sums are rounded together
+constexpr std::size_t kHistory = 3;  // of Anderson's acceleration
+constexpr double kPi = std::numbers::pi;
+
+// Calls work(block, begin, end) for blocks of `count` elements, in parallel.
+template <typename Work>
+void overBlocks(std::size_t count, const Work& work) {
+  const std::size_t blocks = (count + kBlock - 1) / kBlock;
+  tbb::parallel_for(std::size_t{0}, blocks,
+                    [&](std::size_t block) { work(block, block * kBlock, std::min(count, (block + 1) * kBlock)); });
+}
+
+Lanes all(float value) {
+  return value - Lanes{};
+}
+
+void addTo(Sums& sums, const Lanes& values) {
+  for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += double{values[lane]};
+}
+
+// The state of up to kLanes problems. The last entry of each vector is the ground's.
+class Solve {
+ public:
+  Solve(const FieldElements& elements, const LineExchange& exchange, std::span<const std::uint32_t> kinds,
+        std::span<const FieldProblem> problems, bool periodic, double recollision, const SolverEffort& effort)
+      : elements_(elements),
+        exchange_(exchange),
+        kinds_(kinds),
+        problems_(problems),
+        periodic_(periodic),
+        recollision_(recollision),
+        effort_(effort) {
+    readOptics();
+    makeSource();
+  }
+
+  std::vector<FieldSolution> run() {
+    light_ = source_;
+    std::size_t kept = 0;  // differences of the history
+    int iteration = 0;
+    for (;; ++iteration) {
+      step(kept, iteration > 0);
+      if (iteration > 0 && kept < kHistory) ++kept;
+      if (done() || iteration + 1 >= effort_.most_iterations) break;
+      advance(kept);
+    }
+    iterations_ = iteration + 1;
+    return results();
+  }
+
+ private:
+  std::size_t count() const { return elements_.size(); }
+  std::size_t ground() const { return 2 * count(); }
+
+  void readOptics() {
+    const std::size_t kinds = problems_.front().optics.size();
+    reflectance_.resize(kinds);
+    transmittance_.resize(kinds);
+    for (std::size_t kind = 0; kind < kinds; ++kind)
+      for (std::size_t lane = 0; lane < problems_.size(); ++lane) {
+        reflectance_[kind][lane] = problems_[lane].optics[kind].reflectance;
+        transmittance_[kind][lane] = problems_[lane].optics[kind].transmittance;
+      }
+    albedo_ = largestAlbedo(problems_);
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) ground_albedo_[lane] = problems_[lane].ground_albedo;
+    // The ground is as large as its lines make it.
+    ground_area_ = exchange_.line_power / kPi * static_cast<double>(exchange_.all_lines);
+    weight_.resize(2 * count() + 1);
+    for (std::size_t i = 0; i < count(); ++i)
+      weight_[2 * i] = weight_[2 * i + 1] = static_cast<float>(exchange_.lines[i]) * albedo_.of_kinds[kinds_[i]];
+    weight_[ground()] = periodic_ ? static_cast<float>(static_cast<double>(exchange_.all_lines)) * albedo_.ground : 0.f;
+  }
+
+  // Direct light, scaled so that its power is what the elements, as large as their lines make them, pass on; light of
+  // the sky and, without a period, of the ground.
+  void makeSource() {
+    source_.assign(2 * count() + 1, Lanes{});
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) {
+      const FieldProblem& problem = problems_[lane];
+      if (problem.direct.empty()) continue;
+      double power = 0., by_lines = 0.;
+      for (std::size_t side = 0; side < ground(); ++side) {
+        power += double{problem.direct[side]} * double{elements_.area[side / 2]};
+        by_lines += double{problem.direct[side]} * exchange_.lines[side / 2] * exchange_.line_power / kPi;
+      }
+      const double scale = by_lines > 0. ? power / by_lines : 0.;
+      balance_[lane].in = power + (periodic_ ? problem.direct_ground : 0.);
+      for (std::size_t side = 0; side < ground(); ++side)
+        source_[side][lane] = static_cast<float>(scale * double{problem.direct[side]});
+      if (periodic_) source_[ground()][lane] = static_cast<float>(problem.direct_ground / ground_area_);
+    }
+    direct_ = source_;
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) addOutside(lane);
+  }
+
+  void addOutside(std::size_t lane) {
+    const FieldProblem& problem = problems_[lane];
+    const double of_ground = periodic_ ? 0. : double{problem.ground_albedo} * double{problem.ground_open} / kPi;
+    if (problem.outside.empty() && of_ground == 0.) return;
+    std::vector<double> entering((count() + kBlock - 1) / kBlock);
+    overBlocks(count(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
+        double sum = of_ground * exchange_.below[side];
+        if (!problem.outside.empty())
+          for (std::uint64_t i = exchange_.first_outside[side]; i < exchange_.first_outside[side + 1]; ++i)
+            sum += double{problem.outside[exchange_.outside[i]]};
+        if (sum == 0.) continue;
+        entering[block] += sum;
+        source_[side][lane] += static_cast<float>(kPi * sum / exchange_.lines[side / 2]);
+      }
+    });
+    double free = 0.;
+    if (periodic_ && !problem.outside.empty())
+      for (std::size_t axis = 0; axis < exchange_.free_lines.size(); ++axis)
+        free += static_cast<double>(exchange_.free_lines[axis]) *
+                double{problem.outside[axis] + problem.outside[axis + exchange_.free_lines.size()]};
+    source_[ground()][lane] += static_cast<float>(free * exchange_.line_power / std::max(ground_area_, 1e-30));
+    balance_[lane].in +=
+        exchange_.line_power * (std::accumulate(entering.begin(), entering.end(), 0.) + (periodic_ ? free : 0.));
+  }
+
+  // (F4) Radiance that each side sends out.
+  void radiate() {
+    radiance_.resize(2 * count());
+    const auto over_pi = static_cast<float>(1. / kPi);
+    overBlocks(count(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Lanes reflectance = over_pi * reflectance_[kinds_[i]],
+                    transmittance = over_pi * transmittance_[kinds_[i]];
+        const Lanes front = light_[2 * i], back = light_[2 * i + 1];
+        radiance_[2 * i] = reflectance * front + transmittance * back;
+        radiance_[2 * i + 1] = reflectance * back + transmittance * front;
+      }
+    });
+    ground_radiance_ = over_pi * (ground_albedo_ * light_[ground()]);
+  }
+
+  // (F4) The light after one more passage, its difference from the light before it, and the sums that Anderson's
+  // acceleration needs of it.
+  void step(std::size_t kept, bool has_former) {
+    radiate();
+    const std::size_t sides = ground() + 1;
+    passed_.resize(sides);
+    change_.resize(sides);
+    if (has_former) {
+      // The oldest difference makes room.
+      if (kept == kHistory) {
+        std::rotate(change_steps_.begin(), change_steps_.begin() + 1, change_steps_.end());
+        std::rotate(passed_steps_.begin(), passed_steps_.begin() + 1, passed_steps_.end());
+        --kept;
+      }
+      change_steps_[kept].resize(sides);
+      passed_steps_[kept].resize(sides);
+      ++kept;
+    }
+    struct Found {
+      std::array<Sums, kHistory> with_change{};                       // <step_j, change>
+      std::array<std::array<Sums, kHistory>, kHistory> with_steps{};  // <step_j, step_l>
+      Sums squares{}, light_squares{}, down{};
+    };
+    std::vector<Found> found((count() + kBlock - 1) / kBlock);
+    const auto take = [&](std::size_t side, const Lanes& passed, Found& of_block) {
+      const Lanes change = passed - light_[side];
+      if (has_former) {
+        change_steps_[kept - 1][side] = change - change_[side];
+        passed_steps_[kept - 1][side] = passed - passed_[side];
+      }
+      change_[side] = change;
+      passed_[side] = passed;
+      const Lanes weight = all(weight_[side]);
+      addTo(of_block.squares, weight * change * change);
+      addTo(of_block.light_squares, weight * passed * passed);
+      for (std::size_t j = 0; j < kept; ++j) {
+        const Lanes weighted = weight * change_steps_[j][side];
+        addTo(of_block.with_change[j], weighted * change);
+        for (std::size_t l = 0; l <= j; ++l) addTo(of_block.with_steps[j][l], weighted * change_steps_[l][side]);
+      }
+    };
+    overBlocks(count(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+      Found& of_block = found[block];
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
+        const std::uint32_t* source = exchange_.sees.data() + exchange_.first[side];
+        const std::uint32_t* const last = exchange_.sees.data() + exchange_.first[side + 1];
+        Lanes sum{}, other{};
+        for (; source + 1 < last; source += 2) {
+          sum += radiance_[source[0]];
+          other += radiance_[source[1]];
+        }
+        if (source < last) sum += radiance_[*source];
+        sum += other;
+        const std::uint32_t below = exchange_.below[side];
+        if (periodic_ && below > 0) {
+          sum += static_cast<float>(below) * ground_radiance_;
+          addTo(of_block.down, static_cast<float>(below) * radiance_[side]);
+        }
+        const float per_line = static_cast<float>(kPi) / static_cast<float>(std::max(exchange_.lines[side / 2], 1u));
+        take(side, source_[side] + per_line * sum, of_block);
+      }
+    });
+    Found total;
+    const auto sum = [](Sums& to, const Sums& from) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) to[lane] += from[lane];
+    };
+    const auto addFound = [&](const Found& part) {
+      sum(total.squares, part.squares);
+      sum(total.light_squares, part.light_squares);
+      sum(total.down, part.down);
+      for (std::size_t j = 0; j < kHistory; ++j) {
+        sum(total.with_change[j], part.with_change[j]);
+        for (std::size_t l = 0; l <= j; ++l) sum(total.with_steps[j][l], part.with_steps[j][l]);
+      }
+    };
+    for (const Found& part : found) addFound(part);
+    Lanes down{};
+    if (periodic_)
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        down[lane] = static_cast<float>(total.down[lane] * exchange_.line_power / ground_area_);
+    Found of_ground;
+    take(ground(), source_[ground()] + down, of_ground);
+    addFound(of_ground);
+    with_change_ = total.with_change;
+    with_steps_ = total.with_steps;
+    squares_ = total.squares;
+    light_squares_ = total.light_squares;
+  }
+
+  // (F5) Bound on the relative error of the light.
+  double bound(std::size_t lane) const {
+    if (!(light_squares_[lane] > 0.)) return 0.;
+    return std::sqrt(squares_[lane] / light_squares_[lane]) / (1. - recollision_);
+  }
+  bool done() const {
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane)
+      if (bound(lane) > effort_.error) return false;
+    return true;
+  }
+
+  // Coefficients of the history that leave the least change, of one problem: the normal equations by Cholesky, as far
+  // as the differences are independent.
+  std::array<double, kHistory> mixing(std::size_t lane, std::size_t kept) const {
+    std::array<std::array<double, kHistory>, kHistory> factor{};
+    std::array<double, kHistory> y{}, mixing{};
+    std::array<bool, kHistory> used{};
+    for (std::size_t j = 0; j < kept; ++j) {
+      double right = with_change_[j][lane];
+      for (std::size_t l = 0; l < j; ++l) {
+        double sum = with_steps_[j][l][lane];
+        for (std::size_t k = 0; k < l; ++k) sum -= factor[j][k] * factor[l][k];
+        factor[j][l] = used[l] ? sum / factor[l][l] : 0.;
+        right -= factor[j][l] * y[l];
+      }
+      double square = with_steps_[j][j][lane];
+      for (std::size_t l = 0; l < j; ++l) square -= factor[j][l] * factor[j][l];
+      used[j] = square > 1e-10 * with_steps_[j][j][lane] && square > 0.;  // the sums are of single precision
+      factor[j][j] = used[j] ? std::sqrt(square) : 1.;
+      y[j] = used[j] ? right / factor[j][j] : 0.;
+    }
+    for (std::size_t j = kept; j-- > 0;) {
+      double sum = y[j];
+      for (std::size_t l = j + 1; l < kept; ++l) sum -= factor[l][j] * mixing[l];
+      mixing[j] = used[j] ? sum / factor[j][j] : 0.;
+    }
+    return mixing;
+  }
+
+  void advance(std::size_t kept) {
+    std::array<Lanes, kHistory> mixed{};
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) {
+      const auto of_lane = mixing(lane, kept);
+      for (std::size_t j = 0; j < kept; ++j) mixed[j][lane] = static_cast<float>(of_lane[j]);
+    }
+    const auto next = [&](std::size_t side) {
+      Lanes light = passed_[side];
+      for (std::size_t j = 0; j < kept; ++j) light -= mixed[j] * passed_steps_[j][side];
+      light_[side] = light;
+    };
+    overBlocks(count(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side) next(side);
+    });
+    next(ground());
+  }
+
+  std::vector<FieldSolution> results() {
+    std::vector<FieldSolution> solutions(problems_.size());
+    light_ = passed_;
+    radiate();
+    const double area_per_line = exchange_.line_power / kPi;
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) {
+      FieldSolution& solution = solutions[lane];
+      const FieldProblem& problem = problems_[lane];
+      solution.scattered.resize(ground());
+      FieldBalance& balance = balance_[lane];
+      double below = 0., above = 0.;
+      for (std::size_t side = 0; side < ground(); ++side) {
+        const std::size_t element = side / 2;
+        // An element that no line meets takes after the one before it.
+        solution.scattered[side] = exchange_.lines[element] == 0 && element > 0
+                                       ? solution.scattered[side - 2]
+                                       : std::max(0.f, light_[side][lane] - direct_[side][lane]);
+        const ElementOptics& optics = problem.optics[kinds_[element]];
+        const double absorbed = (1. - double{optics.reflectance} - double{optics.transmittance}) *
+                                double{light_[side][lane]} * exchange_.lines[element] * area_per_line;
+        (element < elements_.leaf_elements ? balance.absorbed_leaves : balance.absorbed_wood) += absorbed;
+        const auto outside = exchange_.first_outside[side + 1] - exchange_.first_outside[side];
+        below += double{radiance_[side][lane]} * exchange_.below[side];
+        above += double{radiance_[side][lane]} * static_cast<double>(outside - exchange_.below[side]);
+      }
+      balance.out_up = exchange_.line_power * above;
+      if (periodic_) {
+        solution.ground = double{light_[ground()][lane]};
+        balance.absorbed_ground = (1. - double{problem.ground_albedo}) * solution.ground * ground_area_;
+        const auto free = std::accumulate(exchange_.free_lines.begin(), exchange_.free_lines.end(), std::uint64_t{0});
+        balance.out_up += exchange_.line_power * static_cast<double>(free) * double{ground_radiance_[lane]};
+      } else {
+        solution.ground = double{problem.ground_open};
+        balance.out_down = exchange_.line_power * below;
+      }
+      solution.balance = balance;
+      solution.iterations = iterations_;
+      solution.error_bound = bound(lane);
+      solution.converged = solution.error_bound <= effort_.error;
+    }
+    return solutions;
+  }
+
+  const FieldElements& elements_;
+  const LineExchange& exchange_;
+  std::span<const std::uint32_t> kinds_;
+  std::span<const FieldProblem> problems_;
+  bool periodic_;
+  double recollision_;
+  SolverEffort effort_;
+  FieldAlbedo albedo_;
+  std::vector<Lanes> reflectance_, transmittance_;  // of each kind
+  Lanes ground_albedo_{}, ground_radiance_{};
+  double ground_area_ = 0.;
+  std::vector<float> weight_;  // of each side in sums of squares
+  std::vector<Lanes> source_, direct_, light_, passed_, change_, radiance_;
+  std::array<std::vector<Lanes>, kHistory> change_steps_, passed_steps_;
+  std::array<Sums, kHistory> with_change_{};
+  std::array<std::array<Sums, kHistory>, kHistory> with_steps_{};
+  Sums squares_{}, light_squares_{};
+  std::array<FieldBalance, kLanes> balance_{};
+  int iterations_ = 0;
+};
+
+// Largest eigenvalue of a symmetric tridiagonal matrix, by Sturm's sequence (Golub & Van Loan), and how much of its
+// vector lies on the last row.
+struct Largest {
+  double value, last;
+};
+Largest largestEigenvalue(std::span<const double> diagonal, std::span<const double> beside) {
+  double low = -1., high = 1.;
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    const double around = (i > 0 ? beside[i - 1] : 0.) + (i + 1 < diagonal.size() ? beside[i] : 0.);
+    high = std::max(high, diagonal[i] + around);
+    low = std::min(low, diagonal[i] - around);
+  }
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    double pivot = diagonal[0] - middle;
+    bool above = pivot > 0.;  // whether an eigenvalue lies above
+    for (std::size_t i = 1; i < diagonal.size(); ++i) {
+      pivot = diagonal[i] - middle - beside[i - 1] * beside[i - 1] / (std::abs(pivot) > 1e-30 ? pivot : -1e-30);
+      above = above || pivot > 0.;
+    }
+    (above ? low : high) = middle;
+  }
+  std::vector<double> vector{1.};
+  double squares = 1.;
+  for (std::size_t i = 0; i + 1 < diagonal.size(); ++i) {
+    const double before = i > 0 ? beside[i - 1] * vector[i - 1] : 0.;
+    vector.push_back(((high - diagonal[i]) * vector[i] - before) / std::max(beside[i], 1e-30));
+    squares += vector.back() * vector.back();
+  }
+  return {high, std::abs(vector.back()) / std::sqrt(squares)};
+}
+
+}  // namespace
+
+FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems) {
+  FieldAlbedo albedo;
+  for (const FieldProblem& problem : problems) {
+    albedo.of_kinds.resize(problem.optics.size());
+    for (std::size_t kind = 0; kind < problem.optics.size(); ++kind)
+      albedo.of_kinds[kind] =
+          std::max(albedo.of_kinds[kind], problem.optics[kind].reflectance + problem.optics[kind].transmittance);
+    albedo.ground = std::max(albedo.ground, problem.ground_albedo);
+  }
+  return albedo;
+}
+
+// (F5)
+double recollision(const LineExchange& exchange, std::span<const std::uint32_t> kinds, const FieldAlbedo& albedo,
+                   bool periodic) {
+  constexpr int kMostSteps = 12;
+  const std::size_t elements = kinds.size(), ground = 2 * elements;
+  // Lanczos's method on the symmetric matrix D K D, where D^2 is the albedo and K is made symmetric by the square roots
+  // of the lines' numbers.
+  std::vector<float> scale(ground + 1), from(ground + 1), to(ground + 1), before(ground + 1), sent(ground + 1);
+  for (std::size_t side = 0; side < ground; ++side)
+    scale[side] = exchange.lines[side / 2] > 0
+                      ? std::sqrt(albedo.of_kinds[kinds[side / 2]] / static_cast<float>(exchange.lines[side / 2]))
+                      : 0.f;
+  if (periodic && exchange.all_lines > 0)
+    scale[ground] = std::sqrt(albedo.ground / static_cast<float>(exchange.all_lines));
+  // Light even on all that scatters is not far from the vector sought.
+  for (std::size_t side = 0; side <= ground; ++side) from[side] = scale[side] > 0.f ? 1.f / scale[side] : 0.f;
+  for (std::size_t side = 0; side < ground; ++side) from[side] *= albedo.of_kinds[kinds[side / 2]];
+  from[ground] *= albedo.ground;
+  const std::size_t blocks = (elements + kBlock - 1) / kBlock;
+  const auto product = [&](const std::vector<float>& a, const std::vector<float>& b) {
+    std::vector<double> parts(blocks);
+    overBlocks(elements, [&](std::size_t block, std::size_t begin, std::size_t end) {
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side) parts[block] += double{a[side]} * double{b[side]};
+    });
+    return std::accumulate(parts.begin(), parts.end(), double{a[ground]} * double{b[ground]});
+  };
+  double norm = std::sqrt(product(from, from));
+  if (!(norm > 0.)) return 0.;
+  for (float& value : from) value = static_cast<float>(double{value} / norm);
+  std::vector<double> diagonal, beside;
+  Largest largest{0., 1.};
+  for (int step = 0; step < kMostSteps; ++step) {
+    for (std::size_t side = 0; side <= ground; ++side) sent[side] = scale[side] * from[side];
+    std::vector<double> down(blocks);
+    overBlocks(elements, [&](std::size_t block, std::size_t begin, std::size_t end) {
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
+        float sum = 0.f;
+        for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i) sum += sent[exchange.sees[i]];
+        if (periodic) {
+          sum += static_cast<float>(exchange.below[side]) * sent[ground];
+          down[block] += double{static_cast<float>(exchange.below[side]) * sent[side]};
+        }
+        to[side] = scale[side] * sum;
+      }
+    });
+    to[ground] = scale[ground] * static_cast<float>(std::accumulate(down.begin(), down.end(), 0.));
+    diagonal.push_back(product(from, to));
+    for (std::size_t side = 0; side <= ground; ++side)
+      to[side] -= static_cast<float>(diagonal.back()) * from[side] +
+                  (beside.empty() ? 0.f : static_cast<float>(beside.back()) * before[side]);
+    norm = std::sqrt(product(to, to));
+    beside.push_back(norm);
+    largest = largestEigenvalue(diagonal, beside);
+    // The eigenvalue is as near as this residual's square over the distance to the next one, which is no smaller here
+    // than a hundredth.
+    if (norm * largest.last < 3e-3 * (1. - largest.value) || norm < 1e-7) break;
+    for (float& value : to) value = static_cast<float>(double{value} / norm);
+    std::swap(before, from);
+    std::swap(from, to);
+  }
+  return std::min(1., largest.value + norm * largest.last);
+}
+
+// (F4)
+std::vector<FieldSolution> solveField(const FieldElements& elements, const LineExchange& exchange,
+                                      std::span<const std::uint32_t> kinds, std::span<const FieldProblem> problems,
+                                      bool periodic, double recollision, const SolverEffort& effort) {
+  if (!(recollision < 1. - 1e-6))
+    throw InvalidInput(
+        "leaf albedo = 1: must be below 1 where light can neither leave nor be absorbed: there is no steady state");
+  std::vector<FieldSolution> solutions;
+  for (std::size_t first = 0; first < problems.size(); first += kLanes) {
+    Solve solve(elements, exchange, kinds, problems.subspan(first, std::min(kLanes, problems.size() - first)), periodic,
+                recollision, effort);
+    for (FieldSolution& solution : solve.run()) solutions.push_back(std::move(solution));
+  }
+  return solutions;
+}
+
+}  // namespace sunfleck

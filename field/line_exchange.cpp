@@ -1,0 +1,216 @@
+#include "field/line_exchange.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include "core/available_memory.hpp"
+#include "core/require.hpp"
+#include "field/detail/line_grid.hpp"
+
+namespace sunfleck {
+namespace {
+
+using detail::Crossing64;
+using detail::LineGrid;
+using detail::sideMet;
+
+constexpr std::size_t kChunks = 16;               // of axes, whose links are counted and written one after the other
+constexpr std::uint32_t kFirstOnLine = 1u << 31;  // marks a side, of which there are fewer
+
+// What the lines along one axis cross: the sides they come to, line by line; lines that cross nothing left out.
+struct AxisCrossings {
+  std::vector<std::uint32_t> sides;
+  std::uint64_t lines = 0, free_lines = 0;
+};
+
+// Memory that a thread uses for one axis after another.
+struct Work {
+  std::vector<detail::Span> spans;
+  std::vector<std::pair<std::uint32_t, Crossing64>> found;
+  std::vector<std::uint32_t> next;
+  std::vector<Crossing64> sorted;
+};
+
+void sortLine(Crossing64* begin, Crossing64* end) {
+  if (end - begin > 24) return std::sort(begin, end);
+  for (Crossing64* i = begin; i < end; ++i) {
+    const Crossing64 moved = *i;
+    Crossing64* place = i;
+    for (; place > begin && moved < place[-1]; --place) *place = place[-1];
+    *place = moved;
+  }
+}
+
+AxisCrossings crossingsAlong(const LineGrid& grid, Work& work) {
+  work.found.clear();
+  work.next.assign(grid.lines() + 1, 0);
+  grid.cross(0, grid.triangles(), work.spans, [&](std::size_t line, Crossing64 crossing) {
+    work.found.emplace_back(static_cast<std::uint32_t>(line), crossing);
+    ++work.next[line];
+  });
+  std::uint32_t sum = 0;
+  for (std::uint32_t& next : work.next) sum += std::exchange(next, sum);
+  work.sorted.resize(work.found.size());
+  for (const auto& [line, crossing] : work.found) work.sorted[work.next[line]++] = crossing;
+  AxisCrossings result{.sides = {}, .lines = grid.lines()};
+  result.sides.reserve(work.found.size());
+  std::uint32_t begin = 0;
+  for (std::size_t line = 0; line < grid.lines(); ++line) {
+    const std::uint32_t end = work.next[line];
+    if (begin == end) {
+      ++result.free_lines;
+      continue;
+    }
+    sortLine(&work.sorted[begin], work.sorted.data() + end);
+    for (std::uint32_t i = begin; i < end; ++i)
+      result.sides.push_back(sideMet(work.sorted[i]) | (i == begin ? kFirstOnLine : 0));
+    begin = end;
+  }
+  return result;
+}
+
+// Directions are the same for all stands, and take a while to spread.
+std::vector<Direction> axesOf(int count) {
+  static std::mutex mutex;
+  static std::map<int, std::vector<Direction>> known;
+  const std::scoped_lock lock(mutex);
+  auto& axes = known[count];
+  if (axes.empty()) axes = spreadAxes(count);
+  return axes;
+}
+
+double totalArea(const FieldElements& elements) {
+  return std::accumulate(elements.area.begin(), elements.area.end(), 0.);
+}
+
+// A chunk's share of the links of each side, met and outside; then where its next link goes.
+struct ChunkLinks {
+  std::vector<std::uint32_t> met, outside;
+};
+
+// Calls link(side, source) and outside(side, direction) for what each side sees on the lines along an axis.
+template <typename Link, typename Outside>
+void forLinks(const AxisCrossings& axis, std::size_t number, std::size_t axes, const Link& link,
+              const Outside& outside) {
+  const auto along = static_cast<std::uint16_t>(number), against = static_cast<std::uint16_t>(axes + number);
+  const std::size_t count = axis.sides.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t side = axis.sides[i] & ~kFirstOnLine;
+    if (axis.sides[i] & kFirstOnLine)
+      outside(side, along);
+    else
+      link(side, (axis.sides[i - 1] & ~kFirstOnLine) ^ 1u);
+    if (i + 1 == count || axis.sides[i + 1] & kFirstOnLine)
+      outside(side ^ 1u, against);
+    else
+      link(side ^ 1u, axis.sides[i + 1]);
+  }
+}
+
+}  // namespace
+
+std::size_t LineExchange::memoryBytes() const {
+  return 8 * (first.size() + first_outside.size()) + 4 * (sees.size() + lines.size() + below.size()) +
+         2 * outside.size();
+}
+
+// (F2)
+LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
+                          const ExchangeEffort& effort) {
+  require(elements.leaf_elements > 0, "number of leaves", elements.leaf_elements, "at least 1");
+  require(effort.axes >= 1 && effort.axes <= 16'384, "axes of the exchange", effort.axes, "1 .. 16384");
+  require(effort.crossings > 0.f && effort.crossings <= 1e4f, "crossings of the exchange", effort.crossings,
+          "above 0 and at most 1e4");
+  const auto axes = static_cast<std::size_t>(effort.axes);
+  const double total = totalArea(elements);
+  // A line crosses an element of area A turned any way with probability A / 2 per its own area.
+  const double leaf_area =
+      std::accumulate(elements.area.begin(),
+                      elements.area.begin() + static_cast<std::ptrdiff_t>(elements.leaf_elements), 0.) /
+      static_cast<double>(elements.leaf_elements);
+  const double line_area = 0.5 * leaf_area / double{effort.crossings};
+  const double crossings = 0.5 * total / line_area * static_cast<double>(axes);
+  const double bytes = crossings * 14. + static_cast<double>(elements.size()) * (8. * kChunks + 40.);
+  if (const double available = availableMemory(); bytes > available)
+    throw InvalidInput("the light field: must be of fewer leaves or lines: it would take " +
+                       std::to_string(static_cast<long long>(bytes * 1e-6)) + " MB, and there are " +
+                       std::to_string(static_cast<long long>(available * 1e-6)) + " MB");
+
+  const std::vector<Direction> along = axesOf(effort.axes);
+  const detail::StandSurfaces surfaces{&mesh, &elements, period};
+  std::vector<AxisCrossings> found(axes);
+  LineExchange exchange;
+  const std::size_t sides = 2 * elements.size();
+  std::vector<ChunkLinks> chunks(kChunks);
+  const auto axesOfChunk = [&](std::size_t chunk) {
+    return std::pair(chunk * axes / kChunks, (chunk + 1) * axes / kChunks);
+  };
+  tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
+    Work work;
+    ChunkLinks& links = chunks[chunk];
+    links.met.resize(sides);
+    links.outside.resize(sides);
+    const auto [begin, end] = axesOfChunk(chunk);
+    for (std::size_t axis = begin; axis < end; ++axis) {
+      // Offsets by the R2 sequence (Roberts 2018), so that no place is missed by all axes.
+      const auto number = static_cast<double>(axis) + 0.5;
+      const glm::dvec2 offset(number * 0.7548776662466927, number * 0.5698402909980532);
+      found[axis] = crossingsAlong(LineGrid(surfaces, along[axis], line_area, offset - glm::floor(offset)), work);
+      forLinks(
+          found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t) { ++links.met[side]; },
+          [&](std::uint32_t side, std::uint16_t) { ++links.outside[side]; });
+    }
+  });
+
+  const auto starts = [&](std::vector<std::uint64_t>& first, std::vector<std::uint32_t> ChunkLinks::*counts) {
+    first.resize(sides + 1);
+    std::uint64_t sum = 0;
+    for (std::size_t side = 0; side < sides; ++side) {
+      first[side] = sum;
+      std::uint32_t before = 0;
+      for (ChunkLinks& chunk : chunks) before += std::exchange((chunk.*counts)[side], before);
+      sum += before;
+    }
+    first[sides] = sum;
+    return sum;
+  };
+  exchange.sees.resize(starts(exchange.first, &ChunkLinks::met));
+  exchange.outside.resize(starts(exchange.first_outside, &ChunkLinks::outside));
+  tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
+    ChunkLinks& links = chunks[chunk];
+    const auto [begin, end] = axesOfChunk(chunk);
+    for (std::size_t axis = begin; axis < end; ++axis)
+      forLinks(
+          found[axis], axis, axes,
+          [&](std::uint32_t side, std::uint32_t source) {
+            exchange.sees[exchange.first[side] + links.met[side]++] = source;
+          },
+          [&](std::uint32_t side, std::uint16_t direction) {
+            exchange.outside[exchange.first_outside[side] + links.outside[side]++] = direction;
+          });
+  });
+  exchange.lines.resize(elements.size());
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    exchange.lines[i] = static_cast<std::uint32_t>(exchange.first[2 * i + 1] - exchange.first[2 * i] +
+                                                   exchange.first_outside[2 * i + 1] - exchange.first_outside[2 * i]);
+  exchange.directions = along;
+  for (const Direction& axis : along) exchange.directions.push_back(-axis);
+  exchange.below.resize(sides);
+  for (std::size_t side = 0; side < sides; ++side)
+    for (std::uint64_t i = exchange.first_outside[side]; i < exchange.first_outside[side + 1]; ++i)
+      exchange.below[side] += exchange.directions[exchange.outside[i]].z > 0.f;
+  for (const AxisCrossings& axis : found) exchange.all_lines += axis.lines;
+  for (const AxisCrossings& axis : found) exchange.free_lines.push_back(axis.free_lines);
+  exchange.line_power = line_area * 4. * std::numbers::pi / (2. * static_cast<double>(axes));
+  return exchange;
+}
+
+}  // namespace sunfleck

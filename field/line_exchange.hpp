@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/directions.hpp"
+#include "core/tree_mesh.hpp"
+#include "field/elements.hpp"
+
+namespace sunfleck {
+
+// How many lines exchange light.
+struct ExchangeEffort {
+  int axes = 64;          // directions of lines; light goes both ways [1]
+  float crossings = 1.f;  // of an element of mean area by the lines of one direction, in the mean [1]
+};
+
+// (F2) Who sees whom: parallel lines in directions spread evenly over the sphere, as many per area in each, and the
+// elements that each line crosses, in order. Neighbours on a line see each other, from the sides that face each other;
+// the first and the last on a line see the outside. All lines count alike, so that what one sends to another over a
+// line comes back over it as well: exchange is reciprocal, no light is lost, and even light all around stays even,
+// exactly. It knows nothing of light and optics.
+struct LineExchange {
+  // Of side 2 element (front) or 2 element + 1 (back): the sides it sees, one for each of its lines that meets
+  // something, sees[first[side]] up to sees[first[side + 1]].
+  std::vector<std::uint64_t> first;
+  std::vector<std::uint32_t> sees;
+  std::vector<std::uint32_t> lines;  // of each element: those that cross it; as many come to either side
+  // Of each side, the directions in which light comes to it from outside, as first and sees.
+  std::vector<std::uint64_t> first_outside;
+  std::vector<std::uint16_t> outside;
+  std::vector<std::uint32_t> below;       // of each side, those of them that rise: from the ground
+  std::vector<Direction> directions;      // in which light travels: along each axis, then against it
+  std::vector<std::uint64_t> free_lines;  // with a period: of each axis, lines that meet nothing
+  std::uint64_t all_lines = 0;            // with a period: of all axes
+  double line_power = 0.;                 // that a line carries per radiance: its area times its solid angle [m^2 sr]
+
+  std::size_t sides() const { return first.size() - 1; }
+  std::size_t memoryBytes() const;
+};
+
+//   period  side lengths of the repeated rectangle [m]; none: the stand is alone
+// Throws InvalidInput where the memory that it takes is more than there is.
+LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
+                          const ExchangeEffort& effort = {});
+
+}  // namespace sunfleck
