@@ -136,13 +136,13 @@ void addSceneBenchOptions(CLI::App& command, SceneBenchOptions& options) {
                   "Band of the scene's optics: 0, 1 or 2, red, green or blue (default 0)")
       ->transform(wholeNumberIn(0., 2., "0, 1 or 2"));
   command.add_flag("--with-wood", options.effort.with_wood,
-                   "Let wood stop light in Monte Carlo; the models know leaves only");
+                   "Let wood stop light in Monte Carlo and in the field; the other models know leaves only");
 }
 
 int runBenchScene(const SceneBenchOptions& options, const std::string& folder_name, const RunOptions& run) {
   const SceneBenchEffort effort = effortOf(options, run);
   const Scene scene = readScene(options.scene);
-  requireValidatable(scene, effort.band);
+  judgedModels(scene, effort.band);
   const fs::path folder(folder_name);
   const OutputFolder made(folder);
   const auto csv = folder / "scene_bench.csv", svg = folder / "scene_bench.svg";

@@ -42,6 +42,7 @@ class SweepScene {
   Scene sceneOf(const SweepTask& task, const SweepOptics& optics) const;
   ForwardJob jobOf(const SweepTask& task) const;
   std::uint64_t pathsPerUnit() const;
+  std::vector<float> fieldIrradiance(Scene scene, int band);
 
   const SweepFile& sweep_;
   std::string name_;
@@ -50,6 +51,8 @@ class SweepScene {
   std::string identity_;  // of the scene, the program and the effort
   RayScene rays_;
   StandGeometry stand_;
+  std::vector<std::shared_ptr<const TreeMesh>> field_meshes_;  // with wood or without, as the rays
+  StandField field_;
 };
 
 }  // namespace sunfleck::apps

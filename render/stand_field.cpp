@@ -24,12 +24,20 @@ FieldLighting lightingOf(const Scene& scene) {
   return lighting;
 }
 
-}  // namespace
-
-void requireField(const Scene& scene) {
+std::size_t leavesOf(const Scene& scene) {
   std::size_t leaves = 0;
   for (const Placement& tree : scene.stand.trees) leaves += scene.kindOf(tree).mesh->leaf_count;
-  require(leaves <= kMostFieldLeaves, (scene.origin.empty() ? "" : scene.origin + ": ") + "leaves of all trees", leaves,
+  return leaves;
+}
+
+}  // namespace
+
+bool fieldFits(const Scene& scene) {
+  return leavesOf(scene) <= kMostFieldLeaves;
+}
+
+void requireField(const Scene& scene) {
+  require(fieldFits(scene), (scene.origin.empty() ? "" : scene.origin + ": ") + "leaves of all trees", leavesOf(scene),
           "at most " + std::to_string(kMostFieldLeaves) + " for the model field (others take more)");
 }
 

@@ -11,12 +11,13 @@
 
 namespace sunfleck {
 
-// Throws InvalidInput on a scene whose light field is not computed: one whose trees, together, have more leaves than
-// that is made for.
+// Whether the trees of a scene, together, have no more leaves than the light field is computed of; throws InvalidInput
+// where they have.
+bool fieldFits(const Scene& scene);
 void requireField(const Scene& scene);
 
-// (F26) The light field of a scene's stand, kept for pictures: what comes to either side of each place of each tree by all
-// but the suns' direct light. A place is a leaf or, for the wood, a cell of the tree.
+// (F26) The light field of a scene's stand, kept for pictures: what comes to either side of each place of each tree by
+// all but the suns' direct light. A place is a leaf or, for the wood, a cell of the tree.
 class StandField {
  public:
   explicit StandField(const FieldEffort& effort = {});
@@ -26,7 +27,8 @@ class StandField {
 
   // Of each triangle of a kind of the scene, leaves before wood, its place.
   std::span<const std::uint32_t> places(std::uint32_t kind) const { return kinds_[kind].places; }
-  // Irradiance of the front and the back of each place of a tree, per band [1]; another revision whenever it is another.
+  // Irradiance of the front and the back of each place of a tree, per band [1]; another revision whenever it is
+  // another.
   std::span<const glm::vec3> sides(std::size_t tree) const { return sides_[tree]; }
   std::uint64_t revision() const { return revision_; }
 
@@ -49,8 +51,9 @@ class StandField {
   std::uint64_t revision_ = 0;
 };
 
-// (F28) Irradiance of each leaf by the light field, in a band, direct light included, both sides together per one-sided
-// area: the mean over the stand's trees of the kind, kind after kind, as (R7) has that of the models [unit of the light].
+// (F27) Irradiance of each leaf by the light field, in a band, direct light included, both sides together per one-sided
+// area: the mean over the stand's trees of the kind, kind after kind, as (R7) has that of the models [unit of the
+// light].
 std::vector<float> leafIrradiance(const FieldResult& field, const Scene& scene, int band);
 
 // The same scene without its wood, which the other models do not know.

@@ -137,7 +137,11 @@ void requireModelled(const Scene& scene) {
 }
 
 GeometryNeeds needsOf(Model model) {
-  return {.compensation = needsCompensation(model), .ground_light = needsCompensation(model)};
+  const bool field = model == Model::field;
+  return {.compensation = needsCompensation(model),
+          .sky_light = !field,
+          .ground_light = needsCompensation(model),
+          .field = field};
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort, MapMaker light_map)
@@ -243,7 +247,7 @@ void StandGeometry::updateLights(const Scene& scene) {
 // (D12) The ground sends the light of suns and sky back; that among the trees, in the mean, up to their cells.
 void StandGeometry::updateGround(const Scene& scene, const GeometryNeeds& needs, const Progress& progress) {
   ground_radiance_ = glm::vec3(0.f);
-  const bool sky = needs.sky_light && shining_.sky;
+  const bool sky = (needs.sky_light || needs.field) && shining_.sky;
   const GroundGrid& grid = ground_sky_.grid = foliage_->ground();
   if (scene.ground_albedo == glm::vec3(0.f) || grid.size.x == 0 || !(sky || needs.ground_light)) {
     ground_sky_.irradiance = {};
@@ -309,7 +313,8 @@ void StandGeometry::updateEnvironment(std::span<const std::size_t> instances, co
 
 void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
                            std::optional<std::span<const std::size_t>> trees, const Progress& progress) {
-  costs_before_ = foliage_->costs();
+  costs_before_ = costs();
+  field_told_ = false;
   light_seconds_ = compensation_seconds_ = 0.;
   requireSurfaces(scene);
   updateKinds(scene);
@@ -345,6 +350,10 @@ void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
   }
   updateGround(scene, needs, progress);
   updateEnvironment(instances, needs, progress);
+  if (!needs.field) return;
+  if (!field_) field_ = std::make_unique<StandField>();
+  field_->update(scene);
+  field_told_ = true;
 }
 
 std::span<const float> StandGeometry::compensation(std::size_t tree, std::size_t light) const {
@@ -368,8 +377,18 @@ std::uint64_t StandGeometry::skyLightRevision(std::size_t tree) const {
   return environment_ ? of_instances_[trees_.instance(tree)].environment.revision : 0;
 }
 
-std::vector<ProductCost> StandGeometry::lastCosts() const {
+std::vector<ProductCost> StandGeometry::costs() const {
   std::vector<ProductCost> costs = foliage_->costs();
+  if (field_)
+    for (ProductCost cost : field_->costs()) {
+      cost.name = "field: " + cost.name;
+      costs.push_back(std::move(cost));
+    }
+  return costs;
+}
+
+std::vector<ProductCost> StandGeometry::lastCosts() const {
+  std::vector<ProductCost> costs = this->costs();
   for (std::size_t i = 0; i < costs_before_.size(); ++i) {
     costs[i].made -= costs_before_[i].made;
     costs[i].reused -= costs_before_[i].reused;

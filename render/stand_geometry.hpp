@@ -12,6 +12,7 @@
 #include "grid/foliage_stand.hpp"
 #include "render/model.hpp"
 #include "render/scene.hpp"
+#include "render/stand_field.hpp"
 #include "render/stand_trees.hpp"
 
 namespace sunfleck {
@@ -44,6 +45,7 @@ struct GeometryNeeds {
   bool compensation = true;  // G
   bool sky_light = true;     // where a sky shines: of the cells and, where the ground reflects, of the ground
   bool ground_light = true;  // what the ground sends back to the cells, where it reflects
+  bool field = false;        // the light field, of all trees; of the sky then what comes to the ground
 };
 GeometryNeeds needsOf(Model model);
 
@@ -98,6 +100,9 @@ class StandGeometry {
   //   (D10) mean radiance of the light of sky and ground, per band [1/sr]; empty where there is none, or none is needed
   std::span<const glm::vec3> skyLight(std::size_t tree) const;
 
+  // The light field, if the last update brought it up to date.
+  const StandField* field() const { return field_told_ ? field_.get() : nullptr; }
+
   const GroundSky& groundSky() const { return ground_sky_; }
   glm::vec3 groundRadiance() const { return ground_radiance_; }  // of the ground among the trees, in the mean [1/sr]
 
@@ -109,7 +114,7 @@ class StandGeometry {
 
   double lightSeconds() const { return light_seconds_; }  // wall time of the last update for the lights' maps
   double compensationSeconds() const { return compensation_seconds_; }  // and for all that G needs
-  std::vector<ProductCost> costs() const { return foliage_->costs(); }  // of all updates
+  std::vector<ProductCost> costs() const;                               // of all updates
   std::vector<ProductCost> lastCosts() const;                           // of the last one
 
  private:
@@ -146,6 +151,8 @@ class StandGeometry {
   void updateEnvironment(std::span<const std::size_t> instances, const GeometryNeeds& needs, const Progress& progress);
 
   std::unique_ptr<FoliageStand> foliage_;
+  std::unique_ptr<StandField> field_;  // made when it is first needed
+  bool field_told_ = false;
   std::vector<Prototype> prototypes_;
   StandTrees trees_;
   std::vector<StandKind> kinds_;

@@ -335,17 +335,18 @@ refuses "must not be in another file too" merge part1.trace two.trace -o x.trace
 refuses "made with" trace leaf.obj --period 3 3 --paths 2e4 --checkpoint part1.trace
 refuses "must be a trace file" merge garbage.obj -o x.trace
 refuses "named with the extension .trace" trace leaf.obj --checkpoint x.txt
-# Skies: traces tell of their share; the models' irradiance of leaves refuses them; a checkpoint of another light is refused.
+# Skies: traces tell of their share; only the field tells the irradiance of leaves under them; a checkpoint of another light is refused.
 printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "periodic"\nperiod = [2, 2]\n[sky]\nkind = "overcast"\n' >sky.toml
 does "of the light, the sky's" trace sky.toml --paths 1000 --checkpoint sky.trace
 does '"sky_share": 0.16666' trace sky.toml --paths 1000 --json
 does "HDRF" trace sky.toml --only-brf --brf 0:60:60 --brf-paths 1000
 sed -i 's/overcast/uniform/' sky.toml
 refuses "sky.trace: made with light" trace sky.toml --paths 1000 --checkpoint sky.trace
-refuses "irradiance of leaves" validate sky.toml
+does "FIELD" validate sky.toml --paths 1000 --no-pictures -o report  # alone: the others know no sky
 printf '[tree]\nfile = "leaf.obj"\n[[sun]]\n[[sun]]\nzenith_deg = 30\n' >suns.toml
 refuses "number of suns that shine = 2: must be 1 for Monte Carlo" trace suns.toml
 sed -i 's/= 30/= 95/' suns.toml  # the second has set
+does "FIELD" validate suns.toml --paths 1000 --no-pictures -o report
 does "leaves" trace suns.toml --paths 1000
 refuses "must come from the sun or from the sky" trace leaf.obj --sun-zenith 95 --paths 1000
 refuses "above the horizon" validate leaf.obj --sun-zenith 95

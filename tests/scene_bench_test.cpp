@@ -56,13 +56,14 @@ TEST(F25_BenchScene, TellsTheErrorsOfModelsAndTheNoiseOfMonteCarlo) {
   const Scene scene = layer();
   const SceneBenchEffort effort = smallEffort();
   const SceneBench bench = benchScene(scene, effort);
-  ASSERT_EQ(bench.rows.size(), kModels.size() + effort.paths.size());
+  constexpr std::size_t kSlabs = kModels.size() - 1, kFields = 4;  // the field is last, with several numbers of axes
+  ASSERT_EQ(bench.rows.size(), kSlabs + kFields + effort.paths.size());
 
   StandGeometry stand(effort.geometry);
   stand.update(scene);
   const Validation v = validate(scene, stand, {.trace = effort.reference});
   EXPECT_DOUBLE_EQ(bench.category_noise, v.category_noise.value());
-  for (std::size_t i = 0; i < kModels.size(); ++i) {
+  for (std::size_t i = 0; i < kSlabs; ++i) {
     const SceneBenchRow& row = bench.rows[i];
     EXPECT_EQ(row.method, nameOf(v.models[i].model));
     EXPECT_NEAR(row.weighted, v.models[i].errors.rms_weighted.value(), 1e-12);
@@ -73,8 +74,13 @@ TEST(F25_BenchScene, TellsTheErrorsOfModelsAndTheNoiseOfMonteCarlo) {
     EXPECT_GT(row.sun_turned.wall, 0.);
     EXPECT_TRUE(row.monte_carlo && *row.monte_carlo > 0.);
   }
+  for (std::size_t i = 0; i < kFields; ++i) {
+    const SceneBenchRow& row = bench.rows[kSlabs + i];
+    EXPECT_EQ(row.method, "field");
+    if (row.setting == 64.) EXPECT_NEAR(row.weighted, v.models.back().errors.rms_weighted.value(), 1e-12);
+  }
   for (std::size_t i = 0; i < effort.paths.size(); ++i) {
-    const SceneBenchRow& row = bench.rows[kModels.size() + i];
+    const SceneBenchRow& row = bench.rows[kSlabs + kFields + i];
     const double expected = bench.category_noise * std::sqrt(static_cast<double>(effort.reference.paths) /
                                                              static_cast<double>(effort.paths[i]));
     EXPECT_GT(row.weighted_without_noise, 0.5 * expected) << row.setting;

@@ -144,10 +144,10 @@ struct SomeField {
   }
 };
 
-// (F27) Check what a picture by the field shows against C++ and the figures told of each leaf's sides: those of the
+// (F26) Check what a picture by the field shows against C++ and the figures told of each leaf's sides: those of the
 // side that is seen and of the other, in the suns' light and in the sky's; of a tree of which nothing is told nothing;
 // and that what has changed is sent, and nothing else.
-TEST(F27_StandRenderer, ShowsTheFieldOfEachLeafAndSide) {
+TEST(F26_StandRenderer, ShowsTheFieldOfEachLeafAndSide) {
   Woods woods;
   SomeField field(woods);
   gl::DrawnStand stand = woods.stand();

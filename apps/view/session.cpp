@@ -79,9 +79,13 @@ void Session::advance() {
     grown_.reset();
     if (*kind) attempt([&] { edit(AddKind{**kind, {glm::vec2(camera.target), groundHeight()}}); });
   }
-  if (wished_ != history_->revision() + 1) {
+  const bool field =
+      document().model == Model::field || (look.comparison != Comparison::off && look.other == Model::field);
+  if (wished_ != history_->revision() + 1 || (field && !wished_field_)) {
     wished_ = history_->revision() + 1;
-    worker_.wish({.scene = document().scene, .needs = {}, .effort = document().effort, .revision = wished_});
+    wished_field_ = field;
+    worker_.wish(
+        {.scene = document().scene, .needs = {.field = field}, .effort = document().effort, .revision = wished_});
   }
 }
 

@@ -106,6 +106,7 @@ class Session {
   std::shared_ptr<std::optional<Document>> read_;   // by the worker
   std::shared_ptr<std::optional<TreeKind>> grown_;  // by the worker
   std::uint64_t wished_ = 0, shown_ = 0;            // revisions, one more than the history's
+  bool wished_field_ = false;                       // with the light field
   std::uint64_t gesture_ = 0, strokes_ = 0;
   std::vector<ProductCost> last_costs_, recomputed_;
   double last_seconds_ = 0.;

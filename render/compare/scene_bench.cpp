@@ -14,7 +14,7 @@
 namespace sunfleck {
 namespace {
 
-const std::string kMonteCarlo = "monte_carlo";
+const std::string kMonteCarlo = "monte_carlo", kField = "field";
 
 double secondsBy(clockid_t clock) {
   timespec time{};
@@ -102,12 +102,15 @@ LogPanel panelOf(const SceneBench& bench, const Shown& shown) {
                  .y_title = shown.y_title,
                  .x_seconds = true,
                  .curves = {{.label = "closed forms and single scattering", .colour = "#b2182b", .joined = false},
-                            {.label = "Monte Carlo, by its paths", .colour = "#2166ac"}}};
+                            {.label = "Monte Carlo, by its paths", .colour = "#2166ac"},
+                            {.label = "light field, by its axes", .colour = "#1b7837"}}};
   for (const SceneBenchRow& row : bench.rows)
-    panel.curves[row.method == kMonteCarlo ? 1 : 0].points.push_back(
-        {.x = row.*shown.time.*shown.clock,
-         .y = row.*shown.error,
-         .mark = row.setting > 0. ? countText(row.setting) : row.method});
+    panel.curves[row.method == kMonteCarlo ? 1
+                 : row.method == kField    ? 2
+                                           : 0]
+        .points.push_back({.x = row.*shown.time.*shown.clock,
+                           .y = row.*shown.error,
+                           .mark = row.setting > 0. ? countText(row.setting) : row.method});
   std::erase_if(panel.curves, [](const LogCurve& curve) { return curve.points.empty(); });
   return panel;
 }
@@ -134,9 +137,9 @@ TraceCourse traceCourse(const std::vector<TracePoint>& points) {
 }
 
 SceneBench benchScene(const Scene& scene, const SceneBenchEffort& effort, const Progress& progress) {
-  requireValidatable(scene, effort.band);
+  const std::vector<Model> models = judgedModels(scene, effort.band);
   std::vector<NamedSceneContestant> contestants =
-      sceneContestants(scene, effort.geometry, effort.paths, effort.reference, effort.band, effort.with_wood);
+      sceneContestants(scene, models, effort.geometry, effort.paths, effort.reference, effort.band, effort.with_wood);
   const auto reference_work = static_cast<double>(effort.reference.paths);
   double work = reference_work, done = 0.;
   for (const NamedSceneContestant& one : contestants) work += effort.rounds * one.work;
@@ -215,10 +218,11 @@ std::string sceneBenchPlot(const SceneBench& bench) {
   const char* const cpu = "CPU time, all threads together";
   return logPlot(
       fmt::format("Light on the leaves of {}: run time against error", bench.scene),
-      fmt::format("{} leaves; {}.\nErrors against Monte Carlo of {:.3g} million paths, whose noise of {:.2g} % "
-                  "({:.2g} % of single leaves) is taken off. Monte Carlo: beside its points, its paths.",
-                  bench.leaves, bench.machine, 1e-6 * static_cast<double>(bench.reference_paths),
-                  100. * bench.category_noise, 100. * bench.leaf_noise),
+      fmt::format(
+          "{} leaves; {}.\nErrors against Monte Carlo of {:.3g} million paths, whose noise of {:.2g} % "
+          "({:.2g} % of single leaves) is taken off. Beside points: paths of Monte Carlo, axes of the field's lines.",
+          bench.leaves, bench.machine, 1e-6 * static_cast<double>(bench.reference_paths), 100. * bench.category_noise,
+          100. * bench.leaf_noise),
       {panelOf(bench, {"From nothing but the meshes", cpu, by_category, &SceneBenchRow::from_nothing,
                        &SceneBenchTime::cpu, &SceneBenchRow::weighted_without_noise}),
        panelOf(bench, {"After the sun has turned", cpu, by_category, &SceneBenchRow::sun_turned, &SceneBenchTime::cpu,

@@ -57,8 +57,8 @@ inline bool noisy(double with_noise, double noise) {
 
 // Every contestant against a run of Monte Carlo, on one scene, in rounds in which each has its turn, so that what else
 // the machine does falls on all alike; medians of times are told. Ended early by `progress`: no rows; some of the work
-// ends by std::runtime_error("interrupted") then. Throws InvalidInput as requireValidatable() does, and on a scene
-// whose leaves no path of the reference meets.
+// ends by std::runtime_error("interrupted") then. Throws InvalidInput as judgedModels() does, on a scene of several
+// suns,, and on a scene whose leaves no path of the reference meets.
 SceneBench benchScene(const Scene& scene, const SceneBenchEffort& effort, const Progress& progress = {});
 
 std::string sceneBenchCsv(const SceneBench& bench);

@@ -61,6 +61,30 @@ class ModelContestant final : public SceneContestant {
   std::map<std::pair<float, float>, spp::PowerTable> tables_;
 };
 
+class FieldContestant final : public SceneContestant {
+ public:
+  FieldContestant(const Scene& scene, int axes, int band)
+      : scene_(scene), turned_(turned(scene)), band_(band), effort_{.exchange = {.axes = axes}} {}
+
+  std::vector<float> fromNothing(int /*round*/, const Progress& /*progress*/) override {
+    field_.emplace(effort_);
+    return answer();
+  }
+  void turnAway(const Progress& /*progress*/) override { field_->update(turned_); }
+  std::vector<float> sunTurned(int /*round*/, const Progress& /*progress*/) override { return answer(); }
+
+ private:
+  std::vector<float> answer() {
+    field_->update(scene_);
+    return leafIrradiance(field_->result(), scene_, band_);
+  }
+
+  const Scene scene_, turned_;
+  const int band_;
+  const FieldEffort effort_;
+  std::optional<StandField> field_;
+};
+
 class TraceContestant final : public SceneContestant {
  public:
   TraceContestant(const Scene& scene, const TraceEffort& effort, std::uint64_t seeds_apart, int band, bool with_wood)
@@ -91,14 +115,25 @@ class TraceContestant final : public SceneContestant {
 
 }  // namespace
 
-std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const GeometryEffort& geometry,
+std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const std::vector<Model>& models,
+                                                   const GeometryEffort& geometry,
                                                    const std::vector<std::uint64_t>& paths, const TraceEffort& trace,
                                                    int band, bool with_wood) {
   std::vector<NamedSceneContestant> all;
-  for (const Model model : kModels)
-    all.push_back({.method = nameOf(model),
-                   .work = needsCompensation(model) ? 4e5 : 5e4,
-                   .contestant = std::make_unique<ModelContestant>(scene, model, geometry, band)});
+  const Scene scattering = with_wood ? scene : withoutWood(scene);
+  for (const Model model : models) {
+    if (model != Model::field) {
+      all.push_back({.method = nameOf(model),
+                     .work = needsCompensation(model) ? 4e5 : 5e4,
+                     .contestant = std::make_unique<ModelContestant>(scene, model, geometry, band)});
+      continue;
+    }
+    for (const int axes : {16, 32, 64, 128})
+      all.push_back({.method = nameOf(model),
+                     .setting = static_cast<double>(axes),
+                     .work = 1e4 * axes,
+                     .contestant = std::make_unique<FieldContestant>(scattering, axes, band)});
+  }
   for (std::size_t i = 0; i < paths.size(); ++i) {
     TraceEffort effort = trace;
     effort.paths = paths[i];
