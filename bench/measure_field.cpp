@@ -28,7 +28,7 @@ struct Options {
   std::vector<float> suns{0.f, 45.f, 70.f};
   std::vector<float> albedos{0.5f, 0.95f, 0.99f};
   std::uint64_t paths = 4'000'000;
-  bool single = true, periodic = true, wood = true;
+  bool single = true, periodic = true, wood = true, split = false;
   FieldEffort effort;
 };
 
@@ -76,6 +76,8 @@ Options optionsOf(int argc, char** argv) {
       options.periodic = false;
     else if (word == "--periodic")
       options.single = false;
+    else if (word == "--split")
+      options.split = true;
     else if (word == "--no-wood")
       options.wood = false;
     else
@@ -84,8 +86,29 @@ Options optionsOf(int argc, char** argv) {
   return options;
 }
 
+// Each leaf triangle cut into four.
+void split(TreeMesh& mesh) {
+  std::vector<glm::uvec3> triangles;
+  std::vector<std::uint32_t> leaves;
+  for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i) {
+    const glm::uvec3 t = mesh.leaf_triangles[i];
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& [a, b] : {std::pair(t.x, t.y), std::pair(t.y, t.z), std::pair(t.z, t.x)})
+      mesh.vertices.push_back(0.5f * (mesh.vertices[a] + mesh.vertices[b]));
+    for (const glm::uvec3& part : {glm::uvec3(t.x, first, first + 2), glm::uvec3(first, t.y, first + 1),
+                                   glm::uvec3(first + 2, first + 1, t.z), glm::uvec3(first, first + 1, first + 2)}) {
+      triangles.push_back(part);
+      leaves.push_back(mesh.leaf_of_triangle[i]);
+    }
+  }
+  mesh.leaf_triangles = triangles;
+  mesh.leaf_of_triangle = leaves;
+}
+
 void measure(const std::string& name, const Options& options, bool periodic, float zenith) {
   auto mesh = std::make_shared<TreeMesh>(treeOf(name));
+  const TreeMesh whole = *mesh;
+  if (options.split) split(*mesh);
   if (!options.wood) mesh->wood_triangles.clear();
   Stand stand;
   if (periodic) {

@@ -13,7 +13,7 @@ namespace sunfleck {
 struct ElementRule {
   float least_flatness = 0.95f;  // of a leaf that is one element: |sum of its triangles' area vectors| / its area [1]
   float largest_extent = 0.5f;   // of a leaf that is one element, in mean free paths among the leaves [1]
-  float wood_patch = 1.f;        // side of the cells that gather wood, in square roots of the mean leaf area [1]
+  float wood_patch = 2.f;        // side of the cells that gather wood, in square roots of the mean leaf area [1]
 };
 
 // (F1) What exchanges light in a tree: pieces of its surface that are lit evenly on either side. A leaf, or its

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <mutex>
+#include <glm/geometric.hpp>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -77,13 +76,16 @@ AxisCrossings crossingsAlong(const LineGrid& grid, Work& work) {
   return result;
 }
 
-// Directions are the same for all stands, and take a while to spread.
+// The upper half of spherical Fibonacci points (Swinbank & Purser 2006): evenly spread, and evenly in height, which
+// level layers ask for.
 std::vector<Direction> axesOf(int count) {
-  static std::mutex mutex;
-  static std::map<int, std::vector<Direction>> known;
-  const std::scoped_lock lock(mutex);
-  auto& axes = known[count];
-  if (axes.empty()) axes = spreadAxes(count);
+  const double golden_angle = std::numbers::pi * (3. - std::sqrt(5.));
+  std::vector<Direction> axes;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1. - (2. * i + 1.) / (2. * count), r = std::sqrt(1. - z * z);
+    axes.push_back(
+        glm::normalize(glm::vec3(glm::dvec3(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z))));
+  }
   return axes;
 }
 
