@@ -20,6 +20,7 @@
 #include "render/compare/validation.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_file.hpp"
+#include "render/stand_field.hpp"
 
 namespace sunfleck::apps {
 namespace {

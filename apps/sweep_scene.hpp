@@ -10,6 +10,7 @@
 #include "core/progress.hpp"
 #include "render/reference/forward_trace.hpp"
 #include "render/scene.hpp"
+#include "render/stand_field.hpp"
 #include "render/stand_geometry.hpp"
 
 namespace sunfleck::apps {

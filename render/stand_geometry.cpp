@@ -12,6 +12,7 @@
 
 #include "core/require.hpp"
 #include "grid/neighbours.hpp"
+#include "render/stand_field.hpp"
 #include "sky/sky_shares.hpp"
 
 namespace sunfleck {
@@ -152,6 +153,8 @@ StandGeometry::StandGeometry(const GeometryEffort& effort, MapMaker light_map)
                                                             .light_map = std::move(light_map)})) {
   static_assert(FoliageStand::kMostLights == kMostSuns);
 }
+
+StandGeometry::~StandGeometry() = default;
 
 // The kinds that stand, by prototypes: the same as before where there are such, so that what is known of them stays.
 void StandGeometry::updatePrototypes(const Scene& scene) {

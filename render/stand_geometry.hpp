@@ -12,10 +12,11 @@
 #include "grid/foliage_stand.hpp"
 #include "render/model.hpp"
 #include "render/scene.hpp"
-#include "render/stand_field.hpp"
 #include "render/stand_trees.hpp"
 
 namespace sunfleck {
+
+class StandField;
 
 // How finely the geometry is sampled.
 struct GeometryEffort {
@@ -78,6 +79,7 @@ class StandGeometry {
  public:
   //   light_map  makes the lights' maps, called by the thread that updates; none: the processor does
   explicit StandGeometry(const GeometryEffort& effort = {}, MapMaker light_map = {});
+  ~StandGeometry();
 
   // Brings the lights' maps up to date for the scene, and what else is needed of the trees listed. Throws InvalidInput
   // as requireDrawable() and sunAndSky() do, and std::runtime_error("interrupted") when `progress` ends it: what is

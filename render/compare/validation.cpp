@@ -8,6 +8,7 @@
 
 #include "core/require.hpp"
 #include "render/compare/exact_powers.hpp"
+#include "render/stand_field.hpp"
 
 namespace sunfleck {
 namespace {

@@ -1,6 +1,7 @@
 #include "render/gl/drawn_stand.hpp"
 
 #include "grid/neighbours.hpp"
+#include "render/stand_field.hpp"
 
 namespace sunfleck::gl {
 
