@@ -56,7 +56,8 @@ TEST(F25_BenchScene, TellsTheErrorsOfModelsAndTheNoiseOfMonteCarlo) {
   const Scene scene = layer();
   const SceneBenchEffort effort = smallEffort();
   const SceneBench bench = benchScene(scene, effort);
-  constexpr std::size_t kSlabs = kModels.size() - 1, kFields = 4;  // the field is last, with several numbers of axes
+  constexpr std::size_t kSlabs = kModels.size() - 1,
+                        kFields = 8;  // the field is last, in several resolutions of lines and of cells
   ASSERT_EQ(bench.rows.size(), kSlabs + kFields + effort.paths.size());
 
   StandGeometry stand(effort.geometry);
@@ -76,8 +77,9 @@ TEST(F25_BenchScene, TellsTheErrorsOfModelsAndTheNoiseOfMonteCarlo) {
   }
   for (std::size_t i = 0; i < kFields; ++i) {
     const SceneBenchRow& row = bench.rows[kSlabs + i];
-    EXPECT_EQ(row.method, "field");
-    if (row.setting == 64.) EXPECT_NEAR(row.weighted, v.models.back().errors.rms_weighted.value(), 1e-12);
+    EXPECT_EQ(row.method, i < 4 ? "field" : "grid");
+    if (row.method == "field" && row.setting == 64.)
+      EXPECT_NEAR(row.weighted, v.models.back().errors.rms_weighted.value(), 1e-12);
   }
   for (std::size_t i = 0; i < effort.paths.size(); ++i) {
     const SceneBenchRow& row = bench.rows[kSlabs + kFields + i];

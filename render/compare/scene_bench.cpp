@@ -14,7 +14,7 @@
 namespace sunfleck {
 namespace {
 
-const std::string kMonteCarlo = "monte_carlo", kField = "field";
+const std::string kMonteCarlo = "monte_carlo", kField = "field", kGrid = "grid";
 
 double secondsBy(clockid_t clock) {
   timespec time{};
@@ -89,6 +89,12 @@ std::string orEmpty(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "";
 }
 
+std::size_t curveOf(const SceneBenchRow& row) {
+  if (row.method == kMonteCarlo) return 1;
+  if (row.method == kGrid) return 3;
+  return row.method == kField ? 2 : 0;
+}
+
 struct Shown {
   const char *title, *x_title, *y_title;
   SceneBenchTime SceneBenchRow::*time;
@@ -103,14 +109,12 @@ LogPanel panelOf(const SceneBench& bench, const Shown& shown) {
                  .x_seconds = true,
                  .curves = {{.label = "closed forms and single scattering", .colour = "#b2182b", .joined = false},
                             {.label = "Monte Carlo, by its paths", .colour = "#2166ac"},
-                            {.label = "light field, by its axes", .colour = "#1b7837"}}};
+                            {.label = "light field, by its axes", .colour = "#1b7837"},
+                            {.label = "field on cells alone, by their number along the tree", .colour = "#e08214"}}};
   for (const SceneBenchRow& row : bench.rows)
-    panel.curves[row.method == kMonteCarlo ? 1
-                 : row.method == kField    ? 2
-                                           : 0]
-        .points.push_back({.x = row.*shown.time.*shown.clock,
-                           .y = row.*shown.error,
-                           .mark = row.setting > 0. ? countText(row.setting) : row.method});
+    panel.curves[curveOf(row)].points.push_back({.x = row.*shown.time.*shown.clock,
+                                                 .y = row.*shown.error,
+                                                 .mark = row.setting > 0. ? countText(row.setting) : row.method});
   std::erase_if(panel.curves, [](const LogCurve& curve) { return curve.points.empty(); });
   return panel;
 }
