@@ -7,6 +7,7 @@
 
 #include "apps/bench_directions.hpp"
 #include "apps/bench_pictures.hpp"
+#include "apps/bench_scene.hpp"
 #include "apps/bench_stand.hpp"
 #include "apps/commands.hpp"
 #include "apps/output_folder.hpp"
@@ -115,6 +116,13 @@ void addBench(CLI::App& app, RunOptions& options, int& status) {
   addPictureBenchOptions(*of_pictures, *pictures);
   of_pictures->callback(
       [pictures, folder, &options, &status] { status = runBenchPictures(*pictures, *folder, options); });
+
+  auto of_light = std::make_shared<SceneBenchOptions>();
+  CLI::App* of_scene = addCommand(*bench, options, "scene",
+                                  "The light on a scene's leaves by each model and by Monte Carlo: run time and error");
+  folderOption(*of_scene, "scene_bench.csv and scene_bench.svg");
+  addSceneBenchOptions(*of_scene, *of_light);
+  of_scene->callback([of_light, folder, &options, &status] { status = runBenchScene(*of_light, *folder, options); });
 
   folderOption(*bench, "slab_bench.csv and slab_bench.svg");
   bench->require_subcommand(0, 1);

@@ -186,7 +186,8 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
   command
       ->add_option("--model", render->model,
                    "ss: light scattered once; spp: infinite slab; sppg: slab with G-factor (default); sppr, nstreamg, "
-                   "pp: better slabs with G-factor, refined, by two streams, exact by a table")
+                   "pp: better slabs with G-factor, refined, by two streams, exact by a table; field: no slab, but "
+                   "light that leaves, wood, ground and sky exchange")
       ->check([](const std::string& name) {
         return modelNamed(name) ? std::string() : "model \"" + name + "\": must be one of " + modelNames();
       });

@@ -20,6 +20,7 @@
 #include "render/compare/validation.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_file.hpp"
+#include "render/stand_field.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -118,6 +119,7 @@ std::vector<ReportPicture> makePictures(const ValidateOptions& options, const Ru
   keep("ss", "SS: light scattered once", by(Model::ss));
   keep("spp", "SPP: every leaf in an infinite slab", by(Model::spp));
   keep("sppg", "SPPG: the slab compensated for the crown's edge", by(Model::sppg));
+  if (stand.field()) keep("field", "The light field: light that leaves exchange", by(Model::field));
   const PixelRays pixels = pixelRays(scene);
   const auto paths = static_cast<std::uint64_t>(options.samples) * static_cast<std::uint64_t>(pixels.width) *
                      static_cast<std::uint64_t>(pixels.height);
@@ -146,7 +148,7 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
   options.effort.trace = {.paths = static_cast<std::uint64_t>(options.paths), .seed = run.seed, .threads = run.threads};
   const Scene given = readScene(options.scene);
   const std::vector<Scene> scenes = scenesOf(options, given);
-  for (const Scene& scene : scenes) requireValidatable(scene, options.effort.band);
+  for (const Scene& scene : scenes) judgedModels(scene, options.effort.band);
   const OutputFolder made(options.folder);
   requireWritable(fs::path(options.folder) / "report.html");
   std::vector<Validation> validations;
@@ -160,8 +162,11 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
     const bool plain = scene.kinds.size() == 1 && std::ranges::all_of(scene.stand.trees, [](const Placement& tree) {
                          return tree.rotation == 0.f;
                        });
-    if (plain && pictures.empty() && !options.no_pictures && !interrupted())
+    const bool one_sun = traceLightsOfSuns(scene, {options.effort.band}).size() == 1;  // as the tracer's pictures have
+    if (plain && one_sun && pictures.empty() && !options.no_pictures && !interrupted()) {
+      stand.update(scene, {.field = fieldFits(scene)});
       pictures = picturesIfPossible(options, run, scene, stand);
+    }
   }
   if (validations.empty()) {
     fmt::print(stderr, "sunfleck: ended before there was anything to report\n");
@@ -207,7 +212,7 @@ void addValidate(CLI::App& app, RunOptions& options, int& status) {
                    "Band of the scene's optics: 0, 1 or 2, red, green or blue (default 0)")
       ->transform(wholeNumberIn(0., 2., "0, 1 or 2"));
   command->add_flag("--with-wood", validate->effort.with_wood,
-                    "Let wood stop light in Monte Carlo; the models know leaves only");
+                    "Let wood stop light in Monte Carlo and in the field; the other models know leaves only");
   command->add_flag("--stats", validate->stats,
                     "Tell what was computed, reused and skipped, and what it took; on stderr with --json");
   command->add_flag("--no-pictures", validate->no_pictures, "Make no pictures");

@@ -71,7 +71,10 @@ SweepScene::SweepScene(const SweepFile& sweep, std::size_t scene, std::uint64_t 
                             orNothing(sweep.target), kGeometry.light_resolution, kGeometry.sample_directions,
                             kGeometry.sample_resolution, kGeometry.cells)),
       rays_(meshes(scene_), scene_.stand, sweep.with_wood),
-      stand_(kGeometry) {}
+      stand_(kGeometry) {
+  for (const TreeKind& kind : (sweep.with_wood ? scene_ : withoutWood(scene_)).kinds)
+    field_meshes_.push_back(kind.mesh);
+}
 
 // The scene in one row. Optics stand in the band that they are of.
 Scene SweepScene::sceneOf(const SweepTask& task, const SweepOptics& optics) const {
@@ -118,7 +121,7 @@ std::vector<SweepRow> SweepScene::rows(const SweepTask& task) const {
             {.key = hashOf(fmt::format("{}row {} of {}", shared_identity, i, model)), .inputs = inputs + model});
       };
       if (sweep_.monte_carlo) add("mc");
-      if (!sweep_.models.empty()) requireValidatable(scene, optics.band);
+      for (const Model model : sweep_.models) requireValidatable(scene, model, optics.band);
       for (const Model model : sweep_.models) add(nameOf(model));
     }
   } catch (const InvalidInput& e) {
@@ -171,13 +174,21 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
     for (const TreeKind& kind : sceneOf(task, optics).kinds)
       leaf.push_back(kind.leaf[static_cast<std::size_t>(optics.band)]);
     for (const Model model : sweep_.models) {
-      const ModelErrors errors =
-          modelErrors(leafIrradiance(model, geometry, leaf, exactPowerTable), result.leaf_irradiance, of_depths);
+      const std::vector<float> irradiance = model == Model::field
+                                                ? fieldIrradiance(sceneOf(task, optics), optics.band)
+                                                : leafIrradiance(model, geometry, leaf, exactPowerTable);
+      const ModelErrors errors = modelErrors(irradiance, result.leaf_irradiance, of_depths);
       rows.push_back(fmt::format("{},{},{},{},{},{}", empty, noise, orNothing(errors.rms_category),
                                  orNothing(errors.rms_weighted), orNothing(errors.rms_leaf), orNothing(errors.bias)));
     }
   }
   return rows;
+}
+
+std::vector<float> SweepScene::fieldIrradiance(Scene scene, int band) {
+  for (std::size_t kind = 0; kind < scene.kinds.size(); ++kind) scene.kinds[kind].mesh = field_meshes_[kind];
+  field_.update(scene);
+  return leafIrradiance(field_.result(), scene, band);
 }
 
 double SweepScene::guessedSeconds(const SweepTask& task) const {

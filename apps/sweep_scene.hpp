@@ -10,6 +10,7 @@
 #include "core/progress.hpp"
 #include "render/reference/forward_trace.hpp"
 #include "render/scene.hpp"
+#include "render/stand_field.hpp"
 #include "render/stand_geometry.hpp"
 
 namespace sunfleck::apps {
@@ -42,6 +43,7 @@ class SweepScene {
   Scene sceneOf(const SweepTask& task, const SweepOptics& optics) const;
   ForwardJob jobOf(const SweepTask& task) const;
   std::uint64_t pathsPerUnit() const;
+  std::vector<float> fieldIrradiance(Scene scene, int band);
 
   const SweepFile& sweep_;
   std::string name_;
@@ -50,6 +52,8 @@ class SweepScene {
   std::string identity_;  // of the scene, the program and the effort
   RayScene rays_;
   StandGeometry stand_;
+  std::vector<std::shared_ptr<const TreeMesh>> field_meshes_;  // with wood or without, as the rays
+  StandField field_;
 };
 
 }  // namespace sunfleck::apps

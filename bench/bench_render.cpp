@@ -17,7 +17,9 @@ namespace {
 
 using namespace sunfleck;
 
-constexpr std::array kTimed{Model::ss, Model::spp, Model::sppg, Model::nstreamg, Model::pp};
+constexpr std::array kTimed{Model::ss, Model::spp, Model::sppg, Model::nstreamg, Model::pp, Model::field};
+constexpr std::size_t kMostWithField =
+    64;                         // trees: the field of more takes minutes; their frames have direct light alone
 constexpr float kDetail = 6.f;  // pixels that enlarged leaves cover at most
 
 // A stand that is ready to be drawn, from somewhat above. G is what it is.
@@ -33,7 +35,7 @@ struct Ready {
     prepare();
   }
   void prepare() {
-    geometry.update(scene, {.sky_light = false});
+    geometry.update(scene, {.sky_light = false, .field = scene.stand.trees.size() <= kMostWithField});
     renderer->update(gl::drawnStand(scene, geometry));
     Camera camera = kOverview;
     camera.elevation = 0.5f;
@@ -120,6 +122,8 @@ void frame(benchmark::State& state, int rows, float piece_pixels) {
   state.counters["sppg/ss_cpu"] = sppg.cpu / ss.cpu;
   state.counters["nstreamg/ss_cpu"] = nstreamg.cpu / ss.cpu;
   state.counters["pp/ss_cpu"] = pp.cpu / ss.cpu;
+  state.counters["field/ss"] = of(Model::field).all() / ss.all();
+  state.counters["field/ss_cpu"] = of(Model::field).cpu / ss.cpu;
   state.counters["triangles"] = static_cast<double>(cost.triangles);
   state.counters["calls"] = static_cast<double>(cost.draw_calls);
   state.SetLabel(ready.context->renderer());

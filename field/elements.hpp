@@ -12,7 +12,7 @@ namespace sunfleck {
 // When a leaf is too curved or too large to be one element: its triangles are then elements of their own.
 struct ElementRule {
   float least_flatness = 0.985f;  // of a leaf that is one element: |sum of its triangles' area vectors| / its area [1]
-  float largest_extent = 0.25f;    // of a leaf that is one element, in mean free paths among the leaves [1]
+  float largest_extent = 0.25f;   // of a leaf that is one element, in mean free paths among the leaves [1]
   float wood_patch = 1.f;         // side of the cells that gather wood, in square roots of the mean leaf area [1]
 };
 

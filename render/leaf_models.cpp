@@ -44,6 +44,7 @@ class ModelPowers {
                   std::span<float> up) const {
     switch (model_) {
       case Model::ss:
+      case Model::field:
         for (std::size_t i = 0; i < depth.size(); ++i) {
           down[i] = spp::directPower(depth[i], kMu0);
           up[i] = 0.f;
@@ -139,6 +140,7 @@ LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const 
     const std::size_t kind = geometry.kind_of_tree[tree];
     const std::span<const float> of_cells = stand.compensation(tree, 0);
     std::vector<float>& of_leaves = geometry.compensation.emplace_back();
+    if (of_cells.empty()) continue;
     of_leaves.reserve(centres[kind].size());
     for (const glm::vec3& centre : centres[kind]) of_leaves.push_back(interpolate(stand.cells(kind), of_cells, centre));
   }

@@ -16,7 +16,7 @@ namespace sunfleck {
 // What the models know of the leaves of each tree of a stand: all that does not depend on leaf optics.
 struct LeafGeometry {
   std::vector<LeafDepths> depths;                // of each tree
-  std::vector<std::vector<float>> compensation;  // G of each leaf of each tree [1], 0 .. 1
+  std::vector<std::vector<float>> compensation;  // G of each leaf of each tree [1], 0 .. 1; empty without it
   std::vector<std::vector<float>> projections;   // |n.s0| of each leaf of each kind, each turn counted [1]
   std::vector<std::size_t> kind_of_tree;         // of these
   // The scene's kinds: of each tree, and where their leaves are in what is told of all leaves, kind after kind.
@@ -25,7 +25,8 @@ struct LeafGeometry {
   double depth_seconds = 0.;            // wall time for depths and projections
   double compensation_seconds = 0.;     // wall time for G of the leaves from that of the cells
 };
-// `stand` is up to date for the scene, with G. Throws std::runtime_error("interrupted") when `progress` ends it.
+// `stand` is up to date for the scene, with G where a model asks for it. Throws std::runtime_error("interrupted") when
+// `progress` ends it.
 LeafGeometry leafGeometry(const Scene& scene, const StandGeometry& stand, const Progress& progress = {});
 
 // (R7) Irradiance of each leaf of the prototypes, kind after kind, both sides together per one-sided area, for sun

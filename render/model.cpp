@@ -16,6 +16,8 @@ std::string nameOf(Model model) {
       return "nstreamg";
     case Model::pp:
       return "pp";
+    case Model::field:
+      return "field";
   }
   return {};
 }
@@ -33,7 +35,7 @@ std::string modelNames() {
 }
 
 bool needsCompensation(Model model) {
-  return model != Model::ss && model != Model::spp;
+  return model != Model::ss && model != Model::spp && model != Model::field;
 }
 
 bool tellsSingle(Model model) {

@@ -15,8 +15,10 @@ enum class Model {
   sppr,      // SPP refined by one more scattering, with G
   nstreamg,  // a slab by two streams in each half, with G
   pp,        // the exact slab, from a table, with G
+  field,     // light that leaves and wood exchange, solved for
 };
-inline constexpr std::array kModels{Model::ss, Model::spp, Model::sppg, Model::sppr, Model::nstreamg, Model::pp};
+inline constexpr std::array kModels{Model::ss,       Model::spp, Model::sppg, Model::sppr,
+                                    Model::nstreamg, Model::pp,  Model::field};
 std::string nameOf(Model model);  // "ss", "spp" ...
 std::optional<Model> modelNamed(std::string_view name);
 std::string modelNames();             // "ss, spp ...", for people

@@ -13,6 +13,7 @@
 #include "core/require.hpp"
 #include "core/revision.hpp"
 #include "grid/neighbours.hpp"
+#include "render/stand_field.hpp"
 #include "sky/sky_shares.hpp"
 
 namespace sunfleck {
@@ -139,7 +140,11 @@ void requireModelled(const Scene& scene) {
 }
 
 GeometryNeeds needsOf(Model model) {
-  return {.compensation = needsCompensation(model), .ground_light = needsCompensation(model)};
+  const bool field = model == Model::field;
+  return {.compensation = needsCompensation(model),
+          .sky_light = !field,
+          .ground_light = needsCompensation(model),
+          .field = field};
 }
 
 StandGeometry::StandGeometry(const GeometryEffort& effort, MapMaker light_map)
@@ -151,6 +156,8 @@ StandGeometry::StandGeometry(const GeometryEffort& effort, MapMaker light_map)
                                                             .light_map = std::move(light_map)})) {
   static_assert(FoliageStand::kMostLights == kMostSuns);
 }
+
+StandGeometry::~StandGeometry() = default;
 
 // The kinds that stand, by prototypes: the same as before where there are such, so that what is known of them stays.
 void StandGeometry::updatePrototypes(const Scene& scene) {
@@ -246,7 +253,7 @@ void StandGeometry::updateLights(const Scene& scene) {
 // (D12) The ground sends the light of suns and sky back; that among the trees, in the mean, up to their cells.
 void StandGeometry::updateGround(const Scene& scene, const GeometryNeeds& needs, const Progress& progress) {
   ground_radiance_ = glm::vec3(0.f);
-  const bool sky = needs.sky_light && shining_.sky;
+  const bool sky = (needs.sky_light || needs.field) && shining_.sky;
   const GroundGrid& grid = ground_sky_.grid = foliage_->ground();
   if (scene.ground_albedo == glm::vec3(0.f) || grid.size.x == 0 || !(sky || needs.ground_light)) {
     ground_sky_.irradiance = {};
@@ -312,7 +319,8 @@ void StandGeometry::updateEnvironment(std::span<const std::size_t> instances, co
 
 void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
                            std::optional<std::span<const std::size_t>> trees, const Progress& progress) {
-  costs_before_ = foliage_->costs();
+  costs_before_ = costs();
+  field_told_ = false;
   light_seconds_ = compensation_seconds_ = 0.;
   requireSurfaces(scene);
   updateKinds(scene);
@@ -348,6 +356,10 @@ void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
   }
   updateGround(scene, needs, progress);
   updateEnvironment(instances, needs, progress);
+  if (!needs.field) return;
+  if (!field_) field_ = std::make_unique<StandField>();
+  field_->update(scene);
+  field_told_ = true;
 }
 
 std::span<const float> StandGeometry::compensation(std::size_t tree, std::size_t light) const {
@@ -368,8 +380,18 @@ std::uint64_t StandGeometry::skyLightRevision(std::size_t tree) const {
   return environment_ ? of_instances_[trees_.instance(tree)].environment.revision : 0;
 }
 
-std::vector<ProductCost> StandGeometry::lastCosts() const {
+std::vector<ProductCost> StandGeometry::costs() const {
   std::vector<ProductCost> costs = foliage_->costs();
+  if (field_)
+    for (ProductCost cost : field_->costs()) {
+      cost.name = "field: " + cost.name;
+      costs.push_back(std::move(cost));
+    }
+  return costs;
+}
+
+std::vector<ProductCost> StandGeometry::lastCosts() const {
+  std::vector<ProductCost> costs = this->costs();
   for (std::size_t i = 0; i < costs_before_.size(); ++i) {
     costs[i].made -= costs_before_[i].made;
     costs[i].reused -= costs_before_[i].reused;

@@ -16,6 +16,8 @@
 
 namespace sunfleck {
 
+class StandField;
+
 // How finely the geometry is sampled.
 struct GeometryEffort {
   int light_resolution = 512;   // pixels along the longer side of the light's deep opacity map
@@ -46,6 +48,7 @@ struct GeometryNeeds {
   bool compensation = true;  // G
   bool sky_light = true;     // where a sky shines: of the cells and, where the ground reflects, of the ground
   bool ground_light = true;  // what the ground sends back to the cells, where it reflects
+  bool field = false;        // the light field, of all trees; of the sky then what comes to the ground
 };
 GeometryNeeds needsOf(Model model);
 
@@ -78,6 +81,7 @@ class StandGeometry {
  public:
   //   light_map  makes the lights' maps, called by the thread that updates; none: the processor does
   explicit StandGeometry(const GeometryEffort& effort = {}, MapMaker light_map = {});
+  ~StandGeometry();
 
   // Brings the lights' maps up to date for the scene, and what else is needed of the trees listed. Throws InvalidInput
   // as requireDrawable() and sunAndSky() do, and std::runtime_error("interrupted") when `progress` ends it: what is
@@ -101,6 +105,9 @@ class StandGeometry {
   //   (D10) mean radiance of the light of sky and ground, per band [1/sr]; empty where there is none, or none is needed
   std::span<const glm::vec3> skyLight(std::size_t tree) const;
 
+  // The light field, if the last update brought it up to date.
+  const StandField* field() const { return field_told_ ? field_.get() : nullptr; }
+
   const GroundSky& groundSky() const { return ground_sky_; }
 
   // Another number whenever the content is another, in whichever StandGeometry; 0: there is none.
@@ -110,7 +117,7 @@ class StandGeometry {
 
   double lightSeconds() const { return light_seconds_; }  // wall time of the last update for the lights' maps
   double compensationSeconds() const { return compensation_seconds_; }  // and for all that G needs
-  std::vector<ProductCost> costs() const { return foliage_->costs(); }  // of all updates
+  std::vector<ProductCost> costs() const;                               // of all updates
   std::vector<ProductCost> lastCosts() const;                           // of the last one
 
  private:
@@ -148,6 +155,8 @@ class StandGeometry {
 
   GeometryEffort effort_;
   std::unique_ptr<FoliageStand> foliage_;
+  std::unique_ptr<StandField> field_;  // made when it is first needed
+  bool field_told_ = false;
   std::vector<Prototype> prototypes_;
   StandTrees trees_;
   std::vector<StandKind> kinds_;

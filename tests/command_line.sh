@@ -207,6 +207,15 @@ refuses "mu0 = 1e-50: must be at least 1e-07" slab --model sppr --batch grazing.
 refuses "nosuch" bench directions nosuch -o dirs
 refuses "whole number, 16 to 50000" bench stand --trees 15 -o dirs
 refuses "must not be empty" bench stand -o ""
+refuses "nosuch" bench scene nosuch -o dirs
+refuses "--reference" bench scene leaf.obj --reference 63 -o dirs
+refuses "--paths" bench scene leaf.obj --paths 1e3 nan -o dirs
+refuses "fewer than the reference's" bench scene leaf.obj --reference 1e3 --paths 1e3 -o dirs
+refuses "given once" bench scene leaf.obj --paths 1e3 1e3 -o dirs
+refuses "whole number, 1 to 1000" bench scene leaf.obj --rounds 0 -o dirs
+refuses "0, 1 or 2" bench scene leaf.obj --band 3 -o dirs
+refuses "must not be empty" bench scene leaf.obj -o ""
+refuses "enough to compare" bench scene leaf.obj --reference 1e3 -o dirs
 refuses "nosuch" bench pictures nosuch -o dirs
 refuses "must be named once" bench pictures cherry cherry -o dirs
 refuses "whole number, 2 to 65536" bench pictures --samples 1 -o dirs
@@ -326,17 +335,18 @@ refuses "must not be in another file too" merge part1.trace two.trace -o x.trace
 refuses "made with" trace leaf.obj --period 3 3 --paths 2e4 --checkpoint part1.trace
 refuses "must be a trace file" merge garbage.obj -o x.trace
 refuses "named with the extension .trace" trace leaf.obj --checkpoint x.txt
-# Skies: traces tell of their share; the models' irradiance of leaves refuses them; a checkpoint of another light is refused.
+# Skies: traces tell of their share; only the field tells the irradiance of leaves under them; a checkpoint of another light is refused.
 printf '[tree]\nfile = "leaf.obj"\n[stand]\nkind = "periodic"\nperiod = [2, 2]\n[sky]\nkind = "overcast"\n' >sky.toml
 does "of the light, the sky's" trace sky.toml --paths 1000 --checkpoint sky.trace
 does '"sky_share": 0.16666' trace sky.toml --paths 1000 --json
 does "HDRF" trace sky.toml --only-brf --brf 0:60:60 --brf-paths 1000
 sed -i 's/overcast/uniform/' sky.toml
 refuses "sky.trace: made with light" trace sky.toml --paths 1000 --checkpoint sky.trace
-refuses "irradiance of leaves" validate sky.toml
+does "FIELD" validate sky.toml --paths 1000 --no-pictures -o report  # alone: the others know no sky
 printf '[tree]\nfile = "leaf.obj"\n[[sun]]\n[[sun]]\nzenith_deg = 30\n' >suns.toml
 refuses "number of suns that shine = 2: must be 1 for Monte Carlo" trace suns.toml
 sed -i 's/= 30/= 95/' suns.toml  # the second has set
+does "FIELD" validate suns.toml --paths 1000 --no-pictures -o report
 does "leaves" trace suns.toml --paths 1000
 refuses "must come from the sun or from the sky" trace leaf.obj --sun-zenith 95 --paths 1000
 refuses "above the horizon" validate leaf.obj --sun-zenith 95
@@ -431,6 +441,9 @@ does "sky light" validate leaf.obj --paths 1000 --no-pictures -o report --stats
 does "nstreamg" bench pictures leaf.obj -o benches --samples 2 --size 40 30 --field-of-view 40 --quiet
 [ -s benches/picture_bench_leaf.png ] && grep -q "^leaf,sppg," benches/picture_bench.csv || fail "bench pictures: files"
 does "picture 8 x 6" trace leaf.obj --only-picture --samples 4 --size 8 6 --date 2003-10-17T12:30:30-07:00 --place 39.74 -105.18 --field-of-view 90 --picture benches/p.png --tone-map filmic --quiet
+does "crosses Monte Carlo" bench scene maple --reference 1e4 --paths 1e2 1e3 --rounds 1 -o benches --quiet
+does '"monte_carlo_cpu_seconds"' bench scene maple --reference 1e4 --rounds 1 -o benches --quiet --json
+grep -q "^monte_carlo,2500," benches/scene_bench.csv && [ -s benches/scene_bench.svg ] || fail "bench scene: files"
 does "cherry" bench stand --trees 16 -o benches --quiet
 does '"move_tree_seconds"' bench stand --trees 16 -o benches --quiet --json
 printf 'v 0 0 0\nv 0 1 0\nv 0 1 1\nusemtl leaf\nf 1 2 3\n' >upright.obj  # the sun does not see it
@@ -544,6 +557,12 @@ kill -INT $!
 wait $!
 [ $? -eq 1 ] || fail "bench slab, interrupted: not status 1: $(head -c 400 stderr.txt)"
 [ ! -e empty_bench ] || fail "bench slab, interrupted: left a folder"
+"$program" bench scene cherry -o empty_bench/folder --quiet >/dev/null 2>stderr.txt &
+for _ in $(seq 300); do [ -e empty_bench/folder ] && break; sleep 0.1; done
+kill -INT $!
+wait $!
+[ $? -eq 1 ] || fail "bench scene, interrupted: not status 1: $(head -c 400 stderr.txt)"
+[ ! -e empty_bench ] || fail "bench scene, interrupted: left a folder"
 set +m
 # A batch that is interrupted writes all (0) or nothing.
 for delay in 0.02 0.05 0.1; do

@@ -32,20 +32,21 @@ constexpr float kLeaf = 0.f, kWood = 1.f, kGround = 2.f;
 
 // A fragment as the shader below lays it out, in the light of one sun.
 struct Input {
-  vec4 normal;   // w: kind
-  vec4 to_eye;   // w: kLeaf, kWood or kGround
-  vec4 foliage;  // before, beyond, visible; w: thickness
-  vec4 sky;      // w: G
-  vec4 albedo;   // of the ground; w: light
+  vec4 normal;       // w: kind
+  vec4 to_eye;       // w: kLeaf, kWood or kGround
+  vec4 foliage;      // before, beyond, visible; w: thickness
+  vec4 sky;          // w: G
+  vec4 albedo;       // of the ground; w: light
+  vec4 same, other;  // that the field tells
 };
 struct Output {
-  vec4 direct, single, scattered, sky;
+  vec4 direct, single, scattered, sky, field;
 };
 
 constexpr const char* kMain = R"(
   layout(local_size_x = 64) in;
-  struct Input { vec4 normal, to_eye, foliage, sky, albedo; };
-  struct Output { vec4 direct, single, scattered, sky; };
+  struct Input { vec4 normal, to_eye, foliage, sky, albedo, same, other; };
+  struct Output { vec4 direct, single, scattered, sky, field; };
   layout(std430, binding = 0) readonly buffer Inputs { Input inputs[]; };
   layout(std430, binding = 1) writeonly buffer Outputs { Output outputs[]; };
   void main() {
@@ -59,18 +60,24 @@ constexpr const char* kMain = R"(
     Foliage foliage = Foliage(x.foliage.x, x.foliage.y, x.foliage.z);
     Shaded by_light = shadeByLight(surface, foliage, x.foliage.w, x.sky.w, uint(x.albedo.w));
     Shaded by_sky = shadeBySky(surface, x.sky.xyz);
+    Shaded by_field = Shaded(vec3(0.0), vec3(0.0), vec3(0.0));
+#ifdef FIELD
+    by_field = shadeBySides(surface, x.same.xyz, x.other.xyz);
+#endif
     outputs[i] = Output(vec4(by_light.direct, 0.0), vec4(by_light.single, 0.0), vec4(by_light.scattered, 0.0),
-                        vec4(by_sky.direct + by_sky.scattered, 0.0));
+                        vec4(by_sky.direct + by_sky.scattered, 0.0),
+                        vec4(by_field.scattered, 0.0));
   })";
 
 std::vector<Output> shadedOnGpu(Model model, const ShadingData& data, const std::vector<Input>& inputs) {
   const gl::Context context;
-  const gl::Program program{{.stage = gl::Stage::compute,
-                             .name = nameOf(model),
-                             .text = "#version 450 core\n" + gl::shaderText("render/gl/prelude.glsl") +
-                                     gl::shaderText("spp/spp_formulas.glsl") +
-                                     "struct Foliage { float before, beyond, visible; };\n" +
-                                     gl::shaderText("render/gl/shading.glsl", shadingModel(model).text) + kMain}};
+  const gl::Program program{
+      {.stage = gl::Stage::compute,
+       .name = nameOf(model),
+       .text = std::string("#version 450 core\n") + (model == Model::field ? "#define FIELD\n" : "") +
+               gl::shaderText("render/gl/prelude.glsl") + gl::shaderText("spp/spp_formulas.glsl") +
+               "struct Foliage { float before, beyond, visible; };\n" +
+               gl::shaderText("render/gl/shading.glsl", shadingModel(model).text) + kMain}};
   const gl::ShadingBuffers shading(data);
   shading.bind();
   const gl::Buffer in(inputs), out(std::vector<Output>(inputs.size()));
@@ -97,8 +104,9 @@ std::vector<Output> shadedInCpp(Model model, const ShadingData& data, const std:
         .foliage = {x.foliage.x, x.foliage.y, x.foliage.z}, .thickness = x.foliage.w, .compensation = x.sky.w};
     const Shaded by_light = shading.shadeByLight(surface, at, static_cast<uint>(x.albedo.w));
     const Shaded by_sky = shading.shadeBySky(surface, vec3(x.sky));
+    const Shaded by_field = shading.shadeBySides(surface, vec3(x.same), vec3(x.other));
     outputs.push_back({vec4(by_light.direct, 0.f), vec4(by_light.single, 0.f), vec4(by_light.scattered, 0.f),
-                       vec4(by_sky.direct + by_sky.scattered, 0.f)});
+                       vec4(by_sky.direct + by_sky.scattered, 0.f), vec4(by_field.scattered, 0.f)});
   }
   return outputs;
 }
@@ -158,7 +166,9 @@ std::vector<Input> fragments(const ShadingData& data) {
                       .to_eye = vec4(eye, thing),
                       .foliage = {before, beyond, before > 0.f ? std::exp(-before) * random.uniform() : 1.f, thickness},
                       .sky = {random.uniform(), random.uniform(), random.uniform(), compensation},
-                      .albedo = {random.uniform(), 0.f, 1.f, light}});
+                      .albedo = {random.uniform(), 0.f, 1.f, light},
+                      .same = vec4(direction(random) + 1.f, 0.f),
+                      .other = vec4(direction(random) + 1.f, 0.f)});
   }
   return inputs;
 }
@@ -173,14 +183,15 @@ TEST_P(SurfaceShading, OfTheGpuIsThatOfCpp) {
   const std::vector<Output> gpu = shadedOnGpu(GetParam(), data, inputs), cpp = shadedInCpp(GetParam(), data, inputs);
   float worst = 0.f, brightest = 0.f;
   for (std::size_t i = 0; i < inputs.size(); ++i)
-    for (const auto part : {&Output::direct, &Output::single, &Output::scattered, &Output::sky})
+    for (const auto part : {&Output::direct, &Output::single, &Output::scattered, &Output::sky, &Output::field})
       for (int band = 0; band < 3; ++band) {
         const float found = (gpu[i].*part)[band], expected = (cpp[i].*part)[band];
         ASSERT_TRUE(std::isfinite(expected));
         ASSERT_GE(expected, 0.f);
         ASSERT_NEAR(found, expected, 3e-6f + 3e-6f * expected) << "fragment " << i << " band " << band;
         worst = std::max(worst, std::abs(found - expected));
-        brightest = std::max(brightest, part == &Output::scattered ? expected : 0.f);
+        const bool scattered = part == &Output::scattered || part == &Output::field;
+        brightest = std::max(brightest, scattered ? expected : 0.f);
       }
   EXPECT_EQ(brightest > 0.1f, GetParam() != Model::ss);  // there was something to compare
   std::ostringstream largest;

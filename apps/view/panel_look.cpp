@@ -20,6 +20,8 @@ const char* aboutOf(Model model) {
       return "A slab by two streams in each half, with G";
     case Model::pp:
       return "The exact slab, from a table made once for these leaves, with G";
+    case Model::field:
+      return "Light that leaves, wood and ground exchange, solved for in the background";
   }
   return "";
 }

@@ -55,8 +55,9 @@ Session::Session(std::string name, std::function<Document()> read)
   worker_.run("reading " + name, [read = std::move(read), into = read_] { *into = read(); });
 }
 
-bool Session::needsExact() const {
-  return document().model == Model::pp || look.other == Model::pp;
+ModelNeeds Session::needs() const {
+  const auto draws = [&](Model model) { return document().model == model || look.other == model; };
+  return {.exact = draws(Model::pp), .field = draws(Model::field)};
 }
 
 void Session::write(const std::filesystem::path& file, std::function<void()> writing) {
@@ -88,7 +89,7 @@ void Session::advance() {
     if (!loaded()) std::rethrow_exception(failure);
     attempt([&] { std::rethrow_exception(failure); });
     shown_ = wished_;  // what is drawn stays until the next change
-    answered_exact_ = wished_exact_;
+    answered_needs_ = wished_needs_;
   }
   const bool working = worker_.state().busy;
   if (!loaded()) {
@@ -100,14 +101,14 @@ void Session::advance() {
   if (!prepared_.empty() && !worker_.state().busy)  // all have ended, with an edit or without
     for (const auto& made : std::exchange(prepared_, {}))
       if (*made) attempt([&] { edit(**made); });
-  if (const std::uint64_t stand = history_->stand() + 1; wished_ != stand || needsExact() > wished_exact_) {
+  if (const std::uint64_t stand = history_->stand() + 1; wished_ != stand || !wished_needs_.hold(needs())) {
     wished_ = stand;
-    answered_exact_ = false;
-    wished_exact_ = needsExact();
+    answered_needs_ = {};
+    wished_needs_ = needs();
     worker_.wish({.scene = document().scene,
-                  .needs = {},
+                  .needs = {.field = wished_needs_.field},
                   .effort = document().effort,
-                  .exact = wished_exact_,
+                  .exact = wished_needs_.exact,
                   .revision = wished_});
   }
 }
@@ -274,7 +275,7 @@ void Session::goTo(const std::string& saved_camera) {
 
 void Session::release(const StandWorker::Result& shown) {
   shown_ = shown.made.revision;
-  shown_exact_ = answered_exact_ = shown.made.exact;
+  shown_needs_ = answered_needs_ = {.exact = shown.made.exact, .field = shown.made.needs.field};
   last_costs_ = shown.costs;
   last_seconds_ = shown.seconds;
   if (shown.from_nothing) prepared_seconds_ = shown.seconds;
@@ -292,7 +293,7 @@ void Session::release(const StandWorker::Result& shown) {
 }
 
 bool Session::upToDate() const {
-  return loaded() && prepared_.empty() && shown_ == history_->stand() + 1 && needsExact() <= answered_exact_;
+  return loaded() && prepared_.empty() && shown_ == history_->stand() + 1 && answered_needs_.hold(needs());
 }
 
 std::string Session::lastCostText() const {
@@ -309,7 +310,7 @@ void Session::cancel() {
   worker_.cancel();
   prepared_.clear();
   if (loaded()) shown_ = wished_;  // what is drawn stays until the next change
-  answered_exact_ = wished_exact_;
+  answered_needs_ = wished_needs_;
   say("cancelled");
 }
 

@@ -39,6 +39,13 @@ struct Look {
   float difference_scale = 0.f;   // largest difference that colours tell; 0: that of the picture
 };
 
+// What models need beside what every stand has.
+struct ModelNeeds {
+  bool exact = false;  // tables of the exact solution
+  bool field = false;  // the light field
+  bool hold(const ModelNeeds& other) const { return exact >= other.exact && field >= other.field; }
+};
+
 // What a person works on: the document with its history, the camera, how it is looked at, and the work in the
 // background. It knows no window and no OpenGL.
 class Session {
@@ -95,8 +102,10 @@ class Session {
   void release(const StandWorker::Result& shown);
   // Whether what is drawn is as old as the document.
   bool upToDate() const;
-  // Whether a model can be drawn without waiting: that of the exact solution needs its tables.
-  bool drawable(Model model) const { return model != Model::pp || shown_exact_; }
+  // Whether a model can be drawn without waiting for what it needs.
+  bool drawable(Model model) const {
+    return shown_needs_.hold({.exact = model == Model::pp, .field = model == Model::field});
+  }
   ExactTables& exactTables() { return worker_.tables(); }
   StandWorker::State work() const { return worker_.state(); }
   void cancel();
@@ -124,7 +133,7 @@ class Session {
     std::filesystem::path file;
     std::future<void> ended;
   };
-  bool needsExact() const;
+  ModelNeeds needs() const;
   // Makes an edit in the background, to be done when it is there.
   void prepare(const std::string& what, std::function<SceneEdit()> make);
   void endWritings();
@@ -133,8 +142,7 @@ class Session {
   std::shared_ptr<std::optional<Document>> read_;                    // by the worker
   std::vector<std::shared_ptr<std::optional<SceneEdit>>> prepared_;  // by the worker
   std::uint64_t wished_ = 0, shown_ = 0;                             // stands of the history, one more than its numbers
-  // With tables of the exact solution; answered: made, failed or cancelled.
-  bool wished_exact_ = false, answered_exact_ = false, shown_exact_ = false;
+  ModelNeeds wished_needs_, answered_needs_, shown_needs_;           // answered: made, failed or cancelled
   std::vector<Writing> writings_;
   std::uint64_t gesture_ = 0, strokes_ = 0;
   std::vector<ProductCost> last_costs_, recomputed_;

@@ -67,4 +67,21 @@ std::optional<double> referenceNoise(std::span<const double> reference, std::spa
   return squares > 0. ? std::optional(std::sqrt(variance / squares)) : std::nullopt;
 }
 
+// Variances add over the leaves of a category.
+std::optional<double> categoryNoise(std::span<const double> reference, std::span<const double> standard_error,
+                                    std::span<const Category> categories) {
+  double variance = 0., squares = 0.;
+  for (const Category& category : categories) {
+    double sum = 0., sum_variance = 0.;
+    for (const std::uint32_t leaf : category.leaves) {
+      sum += reference[leaf];
+      sum_variance += standard_error[leaf] * standard_error[leaf];
+    }
+    const auto n = static_cast<double>(category.leaves.size());
+    variance += sum_variance / n;
+    squares += sum * sum / n;
+  }
+  return squares > 0. ? std::optional(std::sqrt(variance / squares)) : std::nullopt;
+}
+
 }  // namespace sunfleck

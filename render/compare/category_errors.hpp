@@ -34,4 +34,8 @@ ModelErrors modelErrors(std::span<const float> model, std::span<const double> re
 // Nothing when all are dark.
 std::optional<double> referenceNoise(std::span<const double> reference, std::span<const double> standard_error);
 
+// The same of category means, as in rms_weighted, which a perfect model is expected to have. Nothing when all are dark.
+std::optional<double> categoryNoise(std::span<const double> reference, std::span<const double> standard_error,
+                                    std::span<const Category> categories);
+
 }  // namespace sunfleck

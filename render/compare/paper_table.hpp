@@ -24,6 +24,7 @@ inline std::optional<double> paperError(const Validation& v, Model model) {
     case Model::sppr:
     case Model::nstreamg:
     case Model::pp:
+    case Model::field:
       break;  // not in the table
   }
   return std::nullopt;

@@ -34,6 +34,8 @@ std::string colourOf(Model model) {  // Okabe & Ito's palette, safe for the colo
       return "#CC79A7";
     case Model::pp:
       return "#56B4E9";
+    case Model::field:
+      return "#000000";
   }
   return "#000000";
 }

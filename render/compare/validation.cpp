@@ -3,10 +3,12 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 #include <numeric>
 
 #include "core/require.hpp"
 #include "render/compare/exact_powers.hpp"
+#include "render/stand_field.hpp"
 
 namespace sunfleck {
 namespace {
@@ -15,20 +17,16 @@ double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
 }
 
-// Noise of category means adds in squares over their leaves.
-std::optional<double> categoryNoise(const ForwardResult& reference, std::span<const Category> categories) {
-  double variance = 0., squares = 0.;
-  for (const Category& category : categories) {
-    double sum = 0., sum_variance = 0.;
-    for (const std::uint32_t leaf : category.leaves) {
-      sum += reference.leaf_irradiance[leaf];
-      sum_variance += reference.leaf_standard_error[leaf] * reference.leaf_standard_error[leaf];
-    }
-    const auto n = static_cast<double>(category.leaves.size());
-    variance += sum_variance / n;
-    squares += sum * sum / n;
-  }
-  return squares > 0. ? std::optional(std::sqrt(variance / squares)) : std::nullopt;
+ModelResult fieldResult(const Scene& scene, int band) {
+  const auto start = std::chrono::steady_clock::now();
+  StandField field;
+  field.update(scene);
+  ModelResult result{.model = Model::field, .irradiance = leafIrradiance(field.result(), scene, band)};
+  const double all = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (const ProductCost& cost : field.costs())
+    if (cost.name != "solutions") result.prepare_seconds += cost.seconds;
+  result.shade_seconds = all - result.prepare_seconds;
+  return result;
 }
 
 }  // namespace
@@ -84,10 +82,82 @@ std::string labelOf(Model model) {
   return label;
 }
 
-void requireValidatable(const Scene& scene, int band) {
+namespace {
+
+// The light and the ground that the models of slabs know.
+void requireSlabs(const Scene& scene, int band) {
   requireModelled(scene);
   require(scene.ground_albedo[band] == 0.f, "ground albedo", scene.ground_albedo[band],
-          "0 for validation: the models know no ground");
+          "0 for validation: the models know no ground (field does, of stands that repeat)");
+}
+
+// Those that the field knows.
+void requireForField(const Scene& scene, int band) {
+  const std::string from = scene.origin.empty() ? "" : scene.origin + ": ";
+  for (const TreeKind& kind : scene.kinds)
+    for (const LeafOptics& leaf : kind.leaf)
+      require(leaf.gloss == 0.f, from + "leaf gloss", leaf.gloss, "0 for validation of the field");
+  for (const Sun& sun : scene.suns)
+    require(sun.diameter == 0.f, from + "sun.diameter_deg", glm::degrees(sun.diameter),
+            "0 for validation of the field");
+  if (!scene.sun().up() || scene.sun().irradiance == glm::vec3(0.f))
+    throw InvalidInput(from +
+                       "the first sun: must shine from above the horizon: the depth of leaves is that in its light");
+  require(scene.stand.trees.size() <= kMostTrees, from + "number of trees in [stand]", scene.stand.trees.size(),
+          "at most " + std::to_string(kMostTrees) + " for the models (trace takes any)");
+  if (!scene.stand.period)
+    require(scene.ground_albedo[band] == 0.f, from + "ground albedo", scene.ground_albedo[band],
+            "0 for validation of a stand that does not repeat");
+  requireDrawable(scene);
+  requireField(scene);
+}
+
+// Light of several suns adds up.
+ForwardResult tracedAll(const RayScene& rays, const Scene& scene, const ValidationEffort& effort,
+                        const Progress& progress) {
+  const std::vector<std::vector<TraceLight>> suns = traceLightsOfSuns(scene, {effort.band});
+  std::optional<ForwardResult> sum;
+  for (std::size_t i = 0; i < suns.size(); ++i) {
+    TraceEffort of_sun = effort.trace;
+    of_sun.seed += i;
+    ForwardResult result = traceForward(rays, suns[i].front(), of_sun, [&](double done) {
+      return goOn(progress, (static_cast<double>(i) + done) / static_cast<double>(suns.size()));
+    });
+    if (!sum) {
+      sum = std::move(result);
+      continue;
+    }
+    for (std::size_t leaf = 0; leaf < sum->leaf_irradiance.size(); ++leaf) {
+      sum->leaf_irradiance[leaf] += result.leaf_irradiance[leaf];
+      sum->leaf_standard_error[leaf] = std::hypot(sum->leaf_standard_error[leaf], result.leaf_standard_error[leaf]);
+    }
+    sum->paths += result.paths;
+    sum->seconds += result.seconds;
+    sum->cpu_seconds += result.cpu_seconds;
+  }
+  return std::move(*sum);
+}
+
+}  // namespace
+
+void requireValidatable(const Scene& scene, Model model, int band) {
+  if (model == Model::field)
+    requireForField(scene, band);
+  else
+    requireSlabs(scene, band);
+}
+
+std::vector<Model> judgedModels(const Scene& scene, int band) {
+  std::vector<Model> judged;
+  std::optional<InvalidInput> why;
+  for (const Model model : kModels) try {
+      requireValidatable(scene, model, band);
+      judged.push_back(model);
+    } catch (const InvalidInput& wrong) {
+      if (!why) why = wrong;
+    }
+  if (judged.empty()) throw *why;
+  return judged;
 }
 
 std::vector<LeafOptics> Validation::optics() const {
@@ -108,7 +178,7 @@ double Validation::albedo() const {
 
 Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
                     const Progress& progress) {
-  requireValidatable(scene, effort.band);
+  const std::vector<Model> models = judgedModels(scene, effort.band);
   const auto band = effort.band;
   Validation result{.scene = scene, .effort = effort};
   const LeafGeometry geometry = leafGeometry(scene, stand, [&](double) { return goOn(progress, 0.); });
@@ -122,15 +192,23 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
   }
 
   const RayScene rays(meshes(scene), scene.stand, effort.with_wood);
-  result.reference = traceForward(rays, traceLight(scene, band), effort.trace, progress);
+  result.reference = tracedAll(rays, scene, effort, progress);
   result.reference_noise = referenceNoise(result.reference.leaf_irradiance, result.reference.leaf_standard_error);
 
   result.categories = categories(result.depths);
   result.leaves_left_out = result.leaves;
   for (const Category& category : result.categories) result.leaves_left_out -= category.leaves.size();
-  result.category_noise = categoryNoise(result.reference, result.categories);
+  result.category_noise =
+      categoryNoise(result.reference.leaf_irradiance, result.reference.leaf_standard_error, result.categories);
 
-  for (const Model model : kModels) {
+  const Scene scattering = effort.with_wood ? scene : withoutWood(scene);
+  for (const Model model : models) {
+    if (model == Model::field) {
+      result.models.push_back(fieldResult(scattering, band));
+      result.models.back().errors =
+          modelErrors(result.models.back().irradiance, result.reference.leaf_irradiance, result.categories);
+      continue;
+    }
     ModelResult& of_model = result.models.emplace_back();
     of_model.model = model;
     const auto start = std::chrono::steady_clock::now();

@@ -35,7 +35,7 @@ struct Validation {
   double mean_depth = 0., mean_thickness = 0.;  // over leaves [1]
   std::size_t leaves = 0, leaf_triangles = 0;   // of the prototypes
   double leaf_area = 0.;                        // one-sided, of the prototypes [m^2]
-  ForwardResult reference;
+  ForwardResult reference;  // of all suns and the sky; what is told by shares of the light is of the first sun
   std::optional<double> reference_noise;  // see referenceNoise()
   // Expected rms_weighted of a perfect model, from the reference's standard errors; nothing when all is dark.
   std::optional<double> category_noise;
@@ -57,11 +57,15 @@ std::vector<std::vector<TraceLight>> traceLightsOfSuns(const Scene& scene, const
 std::string kindOf(const Scene& scene);  // "single tree", "16 trees" or "periodic"
 std::string labelOf(Model model);        // "SS", "SPP", ... "NSTREAMG"
 
-// Throws InvalidInput on a scene that cannot be validated: requireModelled(), or a ground that reflects in this band,
-// of which the models know nothing.
-void requireValidatable(const Scene& scene, int band);
+// Throws InvalidInput on a scene that a model cannot be judged on in a band: the field where there are too many leaves
+// for it, a gloss, suns that are no points, or a ground that reflects under a stand that does not repeat; the others
+// where there is more light than that of one sun of irradiance 1 (requireModelled()), or a ground that reflects.
+void requireValidatable(const Scene& scene, Model model, int band);
+// Those that can; throws InvalidInput where there is none.
+std::vector<Model> judgedModels(const Scene& scene, int band);
 
-// `stand` is up to date for the scene, with G. Throws InvalidInput as requireValidatable() does.
+// `stand` is up to date for the scene, with G for the models that ask for it. Throws InvalidInput as judgedModels()
+// does.
 Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
                     const Progress& progress = {});
 

@@ -36,11 +36,14 @@ struct DrawnKind {
   TreeKind tree;  // its mesh turned as its trees stand
   DrawnCells cells;
   std::vector<LightMap> maps;  // of each light
+  // Of each triangle of the mesh, leaves before wood, its place in the light field; empty where that is not told.
+  std::span<const std::uint32_t> field_places;
 };
 
-// Values of all cells of a tree; another revision whenever they are others (core/revision.hpp).
+// Values of all cells of a tree, or of all its places in the light field; another revision whenever they are others
+// (core/revision.hpp).
 template <typename Value>
-struct CellValues {
+struct TreeValues {
   std::span<const Value> values;  // empty: not told
   std::uint64_t revision = 1;
 };
@@ -48,8 +51,10 @@ struct CellValues {
 struct DrawnTree {
   glm::vec3 position{0.f};  // [m]
   std::uint32_t kind = 0;
-  std::array<CellValues<float>, kMostLights> compensation;  // G for each light; where not told, 1
-  CellValues<glm::vec3> sky_light;                          // mean radiance; where not told, 0 [1/sr]
+  std::array<TreeValues<float>, kMostLights> compensation;  // G for each light; where not told, 1
+  TreeValues<glm::vec3> sky_light;                          // mean radiance; where not told, 0 [1/sr]
+  // (F26) Irradiance of the front and the back of each place by all but the suns' direct light [1].
+  TreeValues<glm::vec3> field;
 };
 
 struct DrawnStand {

@@ -53,6 +53,7 @@ void LevelBuilder::add(std::vector<Level>& into, const std::vector<LevelTriangle
       }
     owned_.push_back(triangle.corners[own[i]]);
     levels_.triangles.push_back(dataOf(triangle));
+    levels_.sources.push_back(triangle.source);
   }
   const auto vertexAt = [&](const LevelTriangle& triangle, std::size_t corner) {
     std::uint32_t& vertex = vertex_of[triangle.shared[corner]];

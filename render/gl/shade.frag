@@ -12,6 +12,11 @@ layout(binding = 7) uniform usamplerBuffer triangles;  // two texels of bits for
 layout(binding = 8) uniform sampler2D sky_radiance;   // rows from the zenith down [1/sr]
 layout(binding = 9) uniform sampler2D ground_sky;     // irradiance of the ground by the sky, per band [1]
 
+#ifdef FIELD
+layout(binding = 14) uniform usamplerBuffer field_places;  // of each triangle, as `triangles`
+layout(binding = 15) uniform samplerBuffer field_light;    // irradiance of the front and the back of each place
+#endif
+
 layout(location = 0) out vec4 total;  // rgb: radiance; a: coverage by trees and ground
 #ifdef LAYERS
 layout(location = 1) out vec4 direct;
@@ -41,6 +46,7 @@ struct Place {
   vec3 stands;    // its tree in the stand's own period; 0 for the ground [m]
   uint number;    // of the tree; kNone for the ground
   bool is_leaf;
+  bool front;     // whether the side that is seen is the one that its triangle is wound about; of wood always
   float error;    // how far its wood may lie from the full tree's [m]
   float away;     // from the line of sight's start [m]
   float coverage; // 0 where there is nothing
@@ -63,6 +69,7 @@ Place placeOnTree(uint triangle, Standing stands, Tree tree, Sight look) {
   place.stands = tree.position;
   place.number = stands.tree;
   place.is_leaf = is_leaf;
+  place.front = slant <= 0.0 || !is_leaf;  // wood has light outside alone, however simplified pieces are turned
   place.error = whole ? middle.x : 0.0;
   place.away = away;
   place.coverage = 1.0;
@@ -85,6 +92,7 @@ Place placeOnGround(Sight look) {
   place.stands = vec3(0.0);
   place.number = kNone;
   place.is_leaf = false;
+  place.front = true;
   place.error = 0.0;
   place.surface = opaqueSurface(0u, kNone, ground_albedo.rgb, vec3(0.0, 0.0, 1.0), -look.along);
   return place;
@@ -107,6 +115,17 @@ vec3 skyTowards(vec3 to_sky) {
   float column = (turn - floor(turn)) * rows_columns.y;
   return texelFetch(sky_radiance, min(ivec2(column, row), ivec2(counts.zy) - 1), 0).rgb;
 }
+
+#ifdef FIELD
+// (F26) What a leaf or wood sends of the light field.
+vec3 byField(Place place, Tree tree, uint triangle) {
+  if (tree.field == 0u) return vec3(0.0);
+  int number = int(kind_frames[tree.kind].cell_count.w + triangle);
+  int at = 2 * int(tree.field - 1u + texelFetch(field_places, number).r), seen = place.front ? at : at + 1;
+  return shadeBySides(place.surface, texelFetch(field_light, seen).rgb,
+                      texelFetch(field_light, place.front ? at + 1 : at).rgb).scattered;
+}
+#endif
 
 void main() {
   Sight look = sightThrough(gl_FragCoord.xy + vec2(pixel_right.w, pixel_up.w));
@@ -143,10 +162,17 @@ void main() {
     sum.single += shaded.single;
     if (light == 0u) of_light = vec4(foliage.before, foliage.beyond, foliage.visible, compensation);
   }
+#ifdef FIELD
+  if (of_tree) sum.scattered += byField(place, tree, id.y);
+#endif
   vec3 sky_sum = vec3(0.0), behind = vec3(0.0);
 #ifndef NO_SKY
   vec3 sky = hasSky() ? skyOnGround(place.lit.xy) : vec3(0.0);
+#ifdef FIELD
+  if (of_tree) sky = vec3(0.0);  // the field holds it
+#else
   if (of_tree) sky = skyLightAt(place.lit, tree);
+#endif
   Shaded by_sky = shadeBySky(place.surface, sky);
   sky_sum = by_sky.direct + by_sky.scattered;
   behind = skyTowards(look.along);

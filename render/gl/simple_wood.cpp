@@ -87,9 +87,15 @@ glm::vec3 across(const glm::vec3& along, std::size_t number) {
 SimpleWood simpleWood(const TreeMesh& mesh, float reach, float piece_area) {
   const Joints joints(mesh, reach);
   SimpleWood wood{.triangles = {}, .shared_count = joints.count()};
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> bones;  // and the surface around each [m^2]
+  struct Bone {
+    double surface = 0.;  // around it [m^2]
+    std::uint32_t source = ~0u;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Bone> bones;
   std::map<std::array<std::uint32_t, 3>, bool> taken;
+  auto source = static_cast<std::uint32_t>(mesh.leaf_triangles.size()) - 1u;
   for (const glm::uvec3& triangle : mesh.wood_triangles) {
+    ++source;
     std::array<std::uint32_t, 3> joint{};
     std::array<glm::vec3, 3> corners{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -105,7 +111,9 @@ SimpleWood simpleWood(const TreeMesh& mesh, float reach, float piece_area) {
     }
     if (longest_side <= 0.f) continue;  // all in one place: too small to be seen
     if (shortest_side < kThin * reach) {
-      bones[std::minmax(joint[longest], joint[(longest + 1) % 3])] += triangleArea(mesh, triangle);
+      Bone& bone = bones[std::minmax(joint[longest], joint[(longest + 1) % 3])];
+      bone.surface += triangleArea(mesh, triangle);
+      bone.source = std::min(bone.source, source);
       continue;
     }
     std::array<std::uint32_t, 3> sorted = joint;
@@ -113,15 +121,16 @@ SimpleWood simpleWood(const TreeMesh& mesh, float reach, float piece_area) {
     if (glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0])) < 1e-6f * reach * reach ||
         !taken.emplace(sorted, true).second)
       continue;
-    wood.triangles.push_back({.corners = corners, .shared = joint, .middle = glm::vec3(reach, 0.f, 0.f)});
+    wood.triangles.push_back(
+        {.corners = corners, .shared = joint, .middle = glm::vec3(reach, 0.f, 0.f), .source = source});
   }
 
   std::vector<double> areas;
-  for (const auto& [ends, surface] : bones) areas.push_back(0.5 * surface);
+  for (const auto& [ends, bone] : bones) areas.push_back(0.5 * bone.surface);
   const std::vector<float> rank = ranks(areas.size());
   const std::vector<float> enlargement = thinned(areas, rank, double{piece_area});
   std::size_t number = 0;
-  for (const auto& [ends, surface] : bones) {
+  for (const auto& [ends, bone] : bones) {
     const std::size_t piece = number++;
     if (enlargement[piece] == 0.f) continue;
     const glm::vec3 a = joints.place(ends.first), b = joints.place(ends.second), middle = 0.5f * (a + b);
@@ -135,7 +144,8 @@ SimpleWood simpleWood(const TreeMesh& mesh, float reach, float piece_area) {
                               .shared = {first, first + 1, first + 2},
                               .middle = middle,
                               .leaf = TriangleData::kThinWood,
-                              .enlargement = enlargement[piece]});
+                              .enlargement = enlargement[piece],
+                              .source = bone.source});
     wood.shared_count += 3;
   }
   return wood;

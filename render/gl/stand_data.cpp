@@ -52,6 +52,9 @@ Sent StandData::update(const DrawnStand& stand) {
   sent.maps = maps_.update(stand);
   sent.cells = cells_.update(stand);
   sent.sky = updateSky(stand);
+  std::vector<const TreeLevels*> levels;
+  for (const Kind& kind : kinds_) levels.push_back(&kind.levels);
+  sent.field = field_.update(stand, levels);
   sent.trees = updateTrees(stand);
   placeGround(stand);
   sent.trees += sendGrids(stand);
@@ -137,7 +140,7 @@ std::size_t StandData::updateTrees(const DrawnStand& stand) {
     trees.push_back({.position = stand.trees[tree].position,
                      .kind = stand.trees[tree].kind,
                      .cells = glm::uvec3(cells_.corner(tree)),
-                     .has_cells = cells_.has(tree) ? 1u : 0u});
+                     .told = (cells_.has(tree) ? 1u : 0u) | field_.place(tree) << 1});
   std::vector<Standing> drawn;
   for (Kind& kind : kinds_) kind.drawn.clear();
   box_ = {};
@@ -235,6 +238,7 @@ void StandData::bind() const {
   ground_sky_.bind(9);
   trees_.bind(12);
   drawn_.bind(13);
+  field_.bind(14, 15);
 }
 
 }  // namespace sunfleck::gl

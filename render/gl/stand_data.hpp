@@ -11,6 +11,7 @@
 #include "render/gl/cell_atlas.hpp"
 #include "render/gl/detail/frame_data.hpp"
 #include "render/gl/drawn_stand.hpp"
+#include "render/gl/field_texture.hpp"
 #include "render/gl/map_pool.hpp"
 #include "render/gl/radiance_texture.hpp"
 #include "render/gl/tree_levels.hpp"
@@ -20,7 +21,7 @@ namespace sunfleck::gl {
 
 // What an update sent to the graphics card [byte].
 struct Sent {
-  std::size_t meshes = 0, maps = 0, trees = 0, cells = 0, sky = 0;
+  std::size_t meshes = 0, maps = 0, trees = 0, cells = 0, sky = 0, field = 0;
 };
 
 // The ground's disc [m].
@@ -75,6 +76,7 @@ class StandData {
   std::vector<std::uint32_t> first_triangle_;  // of each kind
   MapPool maps_;
   CellAtlas cells_;
+  FieldTexture field_;
   RadianceTexture sky_, ground_sky_;
   std::shared_ptr<const SkyMap> sent_sky_;
   std::uint64_t sent_ground_sky_ = 0;

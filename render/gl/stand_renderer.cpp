@@ -75,6 +75,7 @@ struct StandRenderer::Programs {
     if (found == shading.end()) {
       Shader shader = shadingShader(Stage::fragment, "render/gl/shade.frag", purpose.model);
       define(shader, "NEEDS_COMPENSATION", needsCompensation(purpose.model) ? "true" : "false");
+      if (purpose.model == Model::field) define(shader, "FIELD", "1");
       if (purpose.layers) define(shader, "LAYERS", "1");
       if (purpose.one_kind) define(shader, "ONE_KIND", "1");
       if (purpose.one_light) define(shader, "LIGHTS", "1u");

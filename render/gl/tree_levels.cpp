@@ -50,8 +50,8 @@ std::vector<std::size_t> oneTriangleOfEach(const TreeMesh& mesh, const std::vect
   return chosen;
 }
 
-LevelTriangle asItIs(const TreeMesh& mesh, const glm::uvec3& triangle) {
-  LevelTriangle result;
+LevelTriangle asItIs(const TreeMesh& mesh, const glm::uvec3& triangle, std::size_t source) {
+  LevelTriangle result{.source = static_cast<std::uint32_t>(source)};
   for (std::size_t corner = 0; corner < 3; ++corner) {
     result.shared[corner] = triangle[static_cast<int>(corner)];
     result.corners[corner] = mesh.vertices[result.shared[corner]];
@@ -76,7 +76,7 @@ TreeLevels treeLevels(const TreeMesh& mesh) {
       if (enlargement[leaf] == 0.f) continue;
       const bool enlarged = enlargement[leaf] != 1.f;
       if (enlarged && t != one_triangle[leaf]) continue;
-      LevelTriangle triangle = asItIs(mesh, mesh.leaf_triangles[t]);
+      LevelTriangle triangle = asItIs(mesh, mesh.leaf_triangles[t], t);
       if (enlarged) {
         const glm::vec3 middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.f;
         const double larger =
@@ -93,7 +93,8 @@ TreeLevels treeLevels(const TreeMesh& mesh) {
   };
   addLeaves(0.);
   std::vector<LevelTriangle> wood;
-  for (const glm::uvec3& triangle : mesh.wood_triangles) wood.push_back(asItIs(mesh, triangle));
+  for (const glm::uvec3& triangle : mesh.wood_triangles)
+    wood.push_back(asItIs(mesh, triangle, mesh.leaf_triangles.size() + wood.size()));
   builder.add(levels.wood, wood, mesh.vertices.size(), 0.f);
 
   const double all = std::accumulate(areas.begin(), areas.end(), 0.),

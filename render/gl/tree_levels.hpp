@@ -47,8 +47,10 @@ struct TreeLevels {
   std::vector<glm::vec3> vertices;      // in the prototype's frame [m]
   std::vector<std::uint32_t> indices;   // three for each triangle, of each level
   std::vector<TriangleData> triangles;  // of all levels
-  std::vector<Level> leaves, wood;      // from fine to coarse, at least one
-  Bounds box;                           // of all levels [m]
+  // Of each triangle, the one of the mesh that it is or stands for: leaves first, then wood.
+  std::vector<std::uint32_t> sources;
+  std::vector<Level> leaves, wood;  // from fine to coarse, at least one
+  Bounds box;                       // of all levels [m]
 };
 TreeLevels treeLevels(const TreeMesh& mesh);
 

@@ -25,6 +25,7 @@ class FragmentShading::Text : public spp::StreamFormulas<float> {
   virtual ~Text() = default;
   virtual Shaded shadeByLight(Surface, Foliage, float, float, uint) = 0;
   virtual Shaded shadeBySky(Surface, vec3) = 0;
+  virtual Shaded shadeBySides(Surface, vec3, vec3) { return {}; }
 
   std::vector<KindOptics> kinds;
   std::vector<ShadingLight> lights;
@@ -58,6 +59,12 @@ struct FragmentShading::Texts {
 #include "render/shading/tables.glsl"
   };
 
+  struct Field final : Text {
+    using Text::Text;
+#include "render/shading/field.glsl"
+#include "render/shading/shade.glsl"
+  };
+
   static std::unique_ptr<Text> of(Model model, const ShadingData& data) {
     switch (model) {
       case Model::ss:
@@ -69,6 +76,8 @@ struct FragmentShading::Texts {
       case Model::nstreamg:
       case Model::pp:
         return std::make_unique<Tables>(data);
+      case Model::field:
+        return std::make_unique<Field>(data);
     }
     return nullptr;
   }
@@ -94,6 +103,9 @@ Shaded FragmentShading::shadeByLight(const Surface& surface, const FragmentLight
 }
 Shaded FragmentShading::shadeBySky(const Surface& surface, const vec3& sky) const {
   return text_->shadeBySky(surface, sky);
+}
+Shaded FragmentShading::shadeBySides(const Surface& surface, const vec3& same, const vec3& other) const {
+  return text_->shadeBySides(surface, same, other);
 }
 
 Shaded FragmentShading::shade(const Fragment& fragment) const {

@@ -40,9 +40,11 @@ class FragmentShading {
   Surface woodSurface(uint kind, uint tree, const vec3& normal, const vec3& to_eye) const;
   Surface groundSurface(uint kind, const vec3& albedo, const vec3& normal, const vec3& to_eye) const;
 
-  // Of one sun; of the environment; of all suns and the environment.
+  // Of one sun; of the environment; of what the field tells of the sides that are seen and not, nothing by other
+  // models; of all suns and the environment.
   Shaded shadeByLight(const Surface& surface, const FragmentLight& at, uint light) const;
   Shaded shadeBySky(const Surface& surface, const vec3& sky) const;
+  Shaded shadeBySides(const Surface& surface, const vec3& same, const vec3& other) const;
   Shaded shade(const Fragment& fragment) const;
 
  private:

@@ -52,6 +52,7 @@ constexpr std::array kShadingModels{
     ShadingModel{Model::sppr, "render/shading/tables.glsl", refinedNumbers},
     ShadingModel{Model::nstreamg, "render/shading/tables.glsl", streamNumbers},
     ShadingModel{Model::pp, "render/shading/tables.glsl", exactNumbers},
+    ShadingModel{Model::field, "render/shading/field.glsl", none},
 };
 
 }  // namespace

@@ -16,6 +16,7 @@ struct LevelTriangle {
   glm::vec3 middle{0.f};                // see TriangleData
   std::uint32_t leaf = TriangleData::kNoLeaf;
   float enlargement = 1.f;
+  std::uint32_t source = 0;  // see TreeLevels
 };
 
 // Puts the levels of a tree together.

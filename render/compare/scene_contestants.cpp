@@ -1,0 +1,206 @@
+#include "render/compare/scene_contestants.hpp"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "field/clumping.hpp"
+#include "field/direct_light.hpp"
+#include "field/elements.hpp"
+#include "field/grid_field.hpp"
+#include "render/compare/exact_powers.hpp"
+#include "render/compare/validation.hpp"
+#include "render/leaf_models.hpp"
+#include "render/reference/forward_trace.hpp"
+#include "render/stand_field.hpp"
+
+namespace sunfleck {
+namespace {
+
+// The same with the sun elsewhere, above the horizon.
+Scene turned(const Scene& scene) {
+  constexpr float kTurn = 0.1f;
+  Scene other = scene;
+  Sun& sun = other.suns.front();
+  sun.zenith += sun.zenith > 0.5f ? -kTurn : kTurn;
+  return other;
+}
+
+std::vector<LeafOptics> opticsOf(const Scene& scene, int band) {
+  std::vector<LeafOptics> optics;
+  for (const TreeKind& kind : scene.kinds) optics.push_back(kind.leaf[static_cast<std::size_t>(band)]);
+  return optics;
+}
+
+class ModelContestant final : public SceneContestant {
+ public:
+  ModelContestant(const Scene& scene, Model model, const GeometryEffort& effort, int band)
+      : scene_(scene), turned_(turned(scene)), optics_(opticsOf(scene, band)), model_(model), effort_(effort) {}
+
+  std::vector<float> fromNothing(int /*round*/, const Progress& progress) override {
+    stand_.emplace(effort_);
+    tables_.clear();
+    return answer(progress);
+  }
+  void turnAway(const Progress& progress) override { stand_->update(turned_, needsOf(model_), std::nullopt, progress); }
+  std::vector<float> sunTurned(int /*round*/, const Progress& progress) override { return answer(progress); }
+
+ private:
+  std::vector<float> answer(const Progress& progress) {
+    stand_->update(scene_, needsOf(model_), std::nullopt, progress);
+    // Tables of the exact solution hang on optics alone.
+    const auto exact = [this](const LeafOptics& optics) {
+      const std::pair key(optics.reflectance, optics.transmittance);
+      const auto found = tables_.find(key);
+      return found != tables_.end() ? found->second : tables_.emplace(key, exactPowerTable(optics)).first->second;
+    };
+    return leafIrradiance(model_, leafGeometry(scene_, *stand_, progress), optics_, exact);
+  }
+
+  const Scene& scene_;
+  const Scene turned_;
+  const std::vector<LeafOptics> optics_;
+  const Model model_;
+  const GeometryEffort effort_;
+  std::optional<StandGeometry> stand_;
+  std::map<std::pair<float, float>, spp::PowerTable> tables_;
+};
+
+class FieldContestant final : public SceneContestant {
+ public:
+  FieldContestant(const Scene& scene, int axes, int band)
+      : scene_(scene), turned_(turned(scene)), band_(band), effort_{.exchange = {.axes = axes}} {}
+
+  std::vector<float> fromNothing(int /*round*/, const Progress& /*progress*/) override {
+    field_.emplace(effort_);
+    return answer();
+  }
+  void turnAway(const Progress& /*progress*/) override { field_->update(turned_); }
+  std::vector<float> sunTurned(int /*round*/, const Progress& /*progress*/) override { return answer(); }
+
+ private:
+  std::vector<float> answer() {
+    field_->update(scene_);
+    return leafIrradiance(field_->result(), scene_, band_);
+  }
+
+  const Scene scene_, turned_;
+  const int band_;
+  const FieldEffort effort_;
+  std::optional<StandField> field_;
+};
+
+// The field on cells alone, of one tree, not turned.
+class GridContestant final : public SceneContestant {
+ public:
+  GridContestant(const Scene& scene, int cells, int band)
+      : mesh_(scene.kinds[0].mesh),
+        period_(scene.stand.period),
+        light_(scene.sun().light()),
+        cells_(cells),
+        optics_{.leaf = scene.kinds[0].leaf[static_cast<std::size_t>(band)],
+                .wood_reflectance = scene.kinds[0].wood_reflectance[band]} {}
+
+  std::vector<float> fromNothing(int /*round*/, const Progress& /*progress*/) override {
+    elements_ = fieldElements(*mesh_);
+    const PlacedElements tree{.mesh = mesh_.get(), .elements = &elements_};
+    CellMedium alone = cellMedium(std::span(&tree, 1), {.cells = cells_});
+    const float clumped = clumping(*mesh_, alone);
+    field_.emplace(period_ ? cellMedium(std::span(&tree, 1), {.cells = cells_}, period_) : std::move(alone),
+                   std::span(&clumped, 1));
+    return answer();
+  }
+  void turnAway(const Progress& /*progress*/) override {}  // nothing is kept that hangs on the sun
+  std::vector<float> sunTurned(int /*round*/, const Progress& /*progress*/) override { return answer(); }
+
+ private:
+  std::vector<float> answer() {
+    constexpr std::array kDark{0.f};
+    const GridSolution solution = field_->solve({.optics = {{optics_}},
+                                                 .direct = directLight(*mesh_, elements_, period_, light_).irradiance,
+                                                 .entering = field_->evenSky(kDark, kDark, {})});
+    std::vector<float> of_elements(elements_.size());
+    for (std::size_t i = 0; i < of_elements.size(); ++i)
+      of_elements[i] = solution.irradiance[2 * i] + solution.irradiance[2 * i + 1];
+    return leafMeans(elements_, mesh_->leaf_count, of_elements);
+  }
+
+  const std::shared_ptr<const TreeMesh> mesh_;
+  const std::optional<glm::vec2> period_;
+  const Direction light_;
+  const int cells_;
+  const GridOptics optics_;
+  FieldElements elements_;
+  std::optional<GridField> field_;
+};
+
+class TraceContestant final : public SceneContestant {
+ public:
+  TraceContestant(const Scene& scene, const TraceEffort& effort, std::uint64_t seeds_apart, int band, bool with_wood)
+      : scene_(scene), light_(traceLight(scene, band)), effort_(effort), apart_(seeds_apart), with_wood_(with_wood) {}
+
+  std::vector<float> fromNothing(int round, const Progress& progress) override {
+    rays_.emplace(meshes(scene_), scene_.stand, with_wood_);
+    return traced(2 * round, progress);
+  }
+  void turnAway(const Progress& /*progress*/) override {}
+  std::vector<float> sunTurned(int round, const Progress& progress) override { return traced(2 * round + 1, progress); }
+
+ private:
+  std::vector<float> traced(int turn, const Progress& progress) {
+    TraceEffort effort = effort_;
+    effort.seed += static_cast<std::uint64_t>(turn) * apart_;
+    const ForwardResult result = traceForward(*rays_, light_, effort, progress);
+    return {result.leaf_irradiance.begin(), result.leaf_irradiance.end()};
+  }
+
+  const Scene& scene_;
+  const TraceLight light_;
+  const TraceEffort effort_;
+  const std::uint64_t apart_;
+  const bool with_wood_;
+  std::optional<RayScene> rays_;
+};
+
+}  // namespace
+
+std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const std::vector<Model>& models,
+                                                   const GeometryEffort& geometry,
+                                                   const std::vector<std::uint64_t>& paths, const TraceEffort& trace,
+                                                   int band, bool with_wood) {
+  std::vector<NamedSceneContestant> all;
+  const Scene scattering = with_wood ? scene : withoutWood(scene);
+  for (const Model model : models) {
+    if (model != Model::field) {
+      all.push_back({.method = nameOf(model),
+                     .work = needsCompensation(model) ? 4e5 : 5e4,
+                     .contestant = std::make_unique<ModelContestant>(scene, model, geometry, band)});
+      continue;
+    }
+    for (const int axes : {16, 32, 64, 128})
+      all.push_back({.method = nameOf(model),
+                     .setting = static_cast<double>(axes),
+                     .work = 1e4 * axes,
+                     .contestant = std::make_unique<FieldContestant>(scattering, axes, band)});
+    const bool one_tree = scene.stand.trees.size() == 1 && scene.stand.trees[0].rotation == 0.f;
+    if (!one_tree || models.size() == 1) continue;  // under other light than one sun's the field stands alone
+    for (const int cells : {8, 16, 24, 32})
+      all.push_back({.method = "grid",
+                     .setting = static_cast<double>(cells),
+                     .work = 1e5,
+                     .contestant = std::make_unique<GridContestant>(scattering, cells, band)});
+  }
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    TraceEffort effort = trace;
+    effort.paths = paths[i];
+    effort.seed = trace.seed + 1 + i;
+    all.push_back({.method = "monte_carlo",
+                   .setting = static_cast<double>(paths[i]),
+                   .work = static_cast<double>(2 * paths[i]),
+                   .contestant = std::make_unique<TraceContestant>(scene, effort, paths.size(), band, with_wood)});
+  }
+  return all;
+}
+
+}  // namespace sunfleck

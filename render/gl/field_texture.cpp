@@ -1,0 +1,56 @@
+#include "render/gl/field_texture.hpp"
+
+#include <glm/vec4.hpp>
+
+namespace sunfleck::gl {
+
+FieldTexture::FieldTexture()
+    : places_(BufferTexture::Texel::r32ui, "the places of the light field take"),
+      light_(BufferTexture::Texel::rgba32f, "the light field takes") {}
+
+std::size_t FieldTexture::update(const DrawnStand& stand, const std::vector<const TreeLevels*>& levels) {
+  std::vector<Held> now(stand.trees.size());
+  std::size_t texels = 0;
+  for (std::size_t tree = 0; tree < now.size(); ++tree) {
+    const TreeValues<glm::vec3>& field = stand.trees[tree].field;
+    if (field.values.empty()) continue;
+    now[tree] = {static_cast<std::uint32_t>(texels), field.revision};
+    texels += field.values.size();
+  }
+  std::size_t sent = texels > 0 ? sendPlaces(stand, levels) : 0;
+  if (texels > light_.capacity()) {
+    light_.resize(texels);
+    trees_.clear();
+  }
+  trees_.resize(now.size());
+  std::vector<glm::vec4> of_tree;
+  for (std::size_t tree = 0; tree < now.size(); ++tree) {
+    if (now[tree].first == ~0u || now[tree] == trees_[tree]) continue;
+    of_tree.clear();
+    for (const glm::vec3& side : stand.trees[tree].field.values) of_tree.emplace_back(side, 0.f);
+    light_.write(now[tree].first, std::span<const glm::vec4>(of_tree));
+    sent += of_tree.size() * sizeof of_tree[0];
+  }
+  trees_ = std::move(now);
+  return sent;
+}
+
+std::size_t FieldTexture::sendPlaces(const DrawnStand& stand, const std::vector<const TreeLevels*>& levels) {
+  std::vector<std::uint32_t> all;
+  for (std::size_t kind = 0; kind < levels.size(); ++kind) {
+    const std::span<const std::uint32_t> places = stand.kinds[kind].field_places;
+    for (const std::uint32_t source : levels[kind]->sources)
+      all.push_back(source < places.size() ? places[source] : 0u);
+  }
+  if (all == held_places_) return 0;
+  places_.assign(std::span<const std::uint32_t>(all));
+  held_places_ = std::move(all);
+  return held_places_.size() * sizeof held_places_[0];
+}
+
+void FieldTexture::bind(unsigned places, unsigned light) const {
+  places_.bind(places);
+  light_.bind(light);
+}
+
+}  // namespace sunfleck::gl

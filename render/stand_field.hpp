@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "field/leaf_field.hpp"
+#include "render/scene.hpp"
+
+namespace sunfleck {
+
+// Whether the trees of a scene, together, have no more leaves than the light field is computed of; throws InvalidInput
+// where they have.
+bool fieldFits(const Scene& scene);
+void requireField(const Scene& scene);
+
+// (F26) The light field of a scene's stand, kept for pictures: what comes to either side of each place of each tree by
+// all but the suns' direct light. A place is a leaf or, for the wood, a cell of the tree.
+class StandField {
+ public:
+  explicit StandField(const FieldEffort& effort = {});
+
+  // Brings it up to date for the scene. Throws InvalidInput as LeafField, requireField() and sunAndSky() do.
+  void update(const Scene& scene);
+
+  // Of each triangle of a kind of the scene, leaves before wood, its place.
+  std::span<const std::uint32_t> places(std::uint32_t kind) const { return kinds_[kind].places; }
+  // Irradiance of the front and the back of each place of a tree, per band [1]; another revision whenever it is
+  // another.
+  std::span<const glm::vec3> sides(std::size_t tree) const { return sides_[tree]; }
+  std::uint64_t revision() const { return revision_; }
+
+  const FieldResult& result() const { return *result_; }
+  std::vector<ProductCost> costs() const { return field_.costs(); }
+
+ private:
+  // The wood of a kind is lit as the leaves around it.
+  struct Kind {
+    std::shared_ptr<const TreeMesh> mesh;
+    std::vector<std::uint32_t> places;
+    std::vector<std::vector<std::uint32_t>> leaves_around;  // of each place beyond the leaves
+  };
+  static Kind kindOf(const std::shared_ptr<const TreeMesh>& mesh);
+
+  LeafField field_;
+  const FieldResult* result_ = nullptr;
+  std::vector<Kind> kinds_;
+  std::vector<std::vector<glm::vec3>> sides_;
+  std::uint64_t revision_ = 0;
+};
+
+// (F27) Irradiance of each leaf by the light field, in a band, direct light included, both sides together per one-sided
+// area: the mean over the stand's trees of the kind, kind after kind, as (R7) has that of the models [unit of the
+// light].
+std::vector<float> leafIrradiance(const FieldResult& field, const Scene& scene, int band);
+
+// The same scene without its wood, which the other models do not know.
+Scene withoutWood(const Scene& scene);
+
+}  // namespace sunfleck
