@@ -296,7 +296,7 @@ bool RayScene::Geometry::blocked(const glm::vec3& from, const glm::vec3& directi
 void RayScene::Geometry::closest(std::span<const glm::vec3> from, std::span<const Direction> directions,
                                  std::span<const float> reach, std::span<Hit> hits) const {
   if (from.empty()) return;  // see blocked
-  if (period) {
+  if (period || walksAlone()) {
     for (std::size_t i = 0; i < from.size(); ++i)
       hits[i] = closest(from[i], directions[i], Coherence::coherent, reach[i]);
     return;
@@ -325,7 +325,7 @@ void RayScene::Geometry::closest(std::span<const glm::vec3> from, std::span<cons
 
 void RayScene::Geometry::blocked(std::span<const glm::vec3> from, const glm::vec3& direction,
                                  std::span<bool> is_blocked) const {
-  if (period) {
+  if (period || walksAlone()) {
     for (std::size_t i = 0; i < from.size(); ++i)
       if (!is_blocked[i]) is_blocked[i] = blocked(from[i], direction);
     return;

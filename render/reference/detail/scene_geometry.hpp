@@ -179,7 +179,8 @@ struct RayScene::Geometry {
                                    float reach) const;
   bool any(const glm::vec3& from, const glm::vec3& direction, float reach) const;
   detail::Met metBy(const RTCHit& hit, float distance) const;
-  const detail::RayTrees* walked() const;  // none where Embree is asked
+  bool walksAlone() const { return walks_ && scenes.instances; }  // among copies packets of rays gain nothing
+  const detail::RayTrees* walked() const;                         // none where Embree is asked
   bool enterLayer(glm::vec3& point, const glm::vec3& direction, float& reach) const;
 };
 
