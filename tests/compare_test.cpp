@@ -110,8 +110,10 @@ Validation smallValidation(bool periodic, float albedo) {
 TEST(R7_LeafIrradiance, OfBlackLeavesIsDirectLight) {
   const Validation v = smallValidation(true, 0.f);
   for (std::size_t leaf = 0; leaf < v.models[0].irradiance.size(); ++leaf)
-    for (const ModelResult& m : v.models)
-      if (m.model != Model::field) ASSERT_NEAR(m.irradiance[leaf], v.models[0].irradiance[leaf], 1e-6f);
+    for (const ModelResult& m : v.models) {
+      if (m.model == Model::field) continue;
+      ASSERT_NEAR(m.irradiance[leaf], v.models[0].irradiance[leaf], 1e-6f);
+    }
 }
 
 // (R7) Check one black leaf that lies flat under the sun, and one below it in its shadow: the first takes up the whole

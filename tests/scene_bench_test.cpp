@@ -78,8 +78,9 @@ TEST(F25_BenchScene, TellsTheErrorsOfModelsAndTheNoiseOfMonteCarlo) {
   for (std::size_t i = 0; i < kFields; ++i) {
     const SceneBenchRow& row = bench.rows[kSlabs + i];
     EXPECT_EQ(row.method, i < 4 ? "field" : "grid");
-    if (row.method == "field" && row.setting == 64.)
+    if (row.method == "field" && row.setting == 64.) {
       EXPECT_NEAR(row.weighted, v.models.back().errors.rms_weighted.value(), 1e-12);
+    }
   }
   for (std::size_t i = 0; i < effort.paths.size(); ++i) {
     const SceneBenchRow& row = bench.rows[kSlabs + kFields + i];
