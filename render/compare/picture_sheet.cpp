@@ -40,8 +40,7 @@ float largestShown(Image differences) {
 Image pictureSheet(const Image& reference, const std::vector<ComparedPicture>& pictures, const Display& display) {
   const int columns = static_cast<int>(pictures.size()) + 1;
   std::vector<Image> differences;
-  for (const ComparedPicture& of : pictures)
-    differences.push_back(differencePicture(of.picture, reference));
+  for (const ComparedPicture& of : pictures) differences.push_back(differencePicture(of.picture, reference));
   const float high = differences.empty() ? 0.f : largestShown(differences.front());
   Image last;
   if (!differences.empty()) last = withColourBar(inFalseColours(differences.back(), high), high, false);
@@ -69,7 +68,7 @@ std::string pictureErrorHeader() {
 std::string pictureErrorRows(const std::string& scene, const std::vector<ComparedPicture>& pictures) {
   std::string rows;
   for (const ComparedPicture& of : pictures)
-    rows += fmt::format("{},{},{:.6g},{:.3g},{:.6g},{:.6g},{:.6g}\n", scene, of.model, of.error.without_noise,
+    rows += fmt::format("{},{},{:.6g},{:.3g},{:.6g},{:.6g},{:.6g}\n", csvField(scene), of.model, of.error.without_noise,
                         of.error.standard_error, of.error.rms, of.error.noise, of.error.bias);
   return rows;
 }
