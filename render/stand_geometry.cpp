@@ -158,6 +158,8 @@ StandGeometry::StandGeometry(const GeometryEffort& effort, MapMaker light_map)
 }
 
 StandGeometry::~StandGeometry() = default;
+StandGeometry::StandGeometry(StandGeometry&&) noexcept = default;
+StandGeometry& StandGeometry::operator=(StandGeometry&&) noexcept = default;
 
 // The kinds that stand, by prototypes: the same as before where there are such, so that what is known of them stays.
 void StandGeometry::updatePrototypes(const Scene& scene) {

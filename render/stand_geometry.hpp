@@ -82,6 +82,8 @@ class StandGeometry {
   //   light_map  makes the lights' maps, called by the thread that updates; none: the processor does
   explicit StandGeometry(const GeometryEffort& effort = {}, MapMaker light_map = {});
   ~StandGeometry();
+  StandGeometry(StandGeometry&&) noexcept;
+  StandGeometry& operator=(StandGeometry&&) noexcept;
 
   // Brings the lights' maps up to date for the scene, and what else is needed of the trees listed. Throws InvalidInput
   // as requireDrawable() and sunAndSky() do, and std::runtime_error("interrupted") when `progress` ends it: what is

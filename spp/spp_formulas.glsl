@@ -55,16 +55,16 @@ SHARED_FN Number depthWithin(Number depth, Number thickness, Number w) {
 }
 
 // (S2) What SPP's solution has of the leaves and the light's direction, the same at all depths of all slabs.
-struct SppConstants {
+struct SppRates {
   Number rate;      // k                                                                           [1], >= 0
   Number loss;      // gamma / mu0, gamma = 1 - omega T                                            [1], >= 0
   Number backward;  // omega R / mu0                                                               [1], >= 0
 };
 
-SHARED_FN SppConstants sppConstants(Number mu0, Number albedo, Number forward_share) {
+SHARED_FN SppRates sppRates(Number mu0, Number albedo, Number forward_share) {
   Number backward_share = Number(1.0f) - forward_share;
   Number lost = Number(1.0f) - albedo;
-  SppConstants leaves;
+  SppRates leaves;
   leaves.rate = sqrt((lost + Number(2.0f) * albedo * backward_share) * lost) / mu0;
   leaves.loss = (lost + albedo * backward_share) / mu0;
   leaves.backward = albedo * backward_share / mu0;
@@ -73,7 +73,7 @@ SHARED_FN SppConstants sppConstants(Number mu0, Number albedo, Number forward_sh
 
 // (S2) SPP, Shinya et al. 2013 Eqs. 11 to 22 in a form whose every exponent is negative and that has no pole at
 // albedo 1, where its exponent k is 0.
-SHARED_FN SlabPowers sppPowersOf(SHARED_IN(SppConstants) leaves, Number depth, Number thickness) {
+SHARED_FN SlabPowers sppPowersOf(SHARED_IN(SppRates) leaves, Number depth, Number thickness) {
   Number w = min(thickness, Number(1.0e30f));  // as good as infinite, and its products are still numbers
   Number z = depthWithin(depth, thickness, w);
   Number rest = w - z;
@@ -93,11 +93,11 @@ SHARED_FN SlabPowers sppPowersOf(SHARED_IN(SppConstants) leaves, Number depth, N
   return powers;
 }
 SHARED_FN SlabPowers sppPowers(Number depth, Number thickness, Number mu0, Number albedo, Number forward_share) {
-  return sppPowersOf(sppConstants(mu0, albedo, forward_share), depth, thickness);
+  return sppPowersOf(sppRates(mu0, albedo, forward_share), depth, thickness);
 }
 
 // (R35) Of SPP's diffuse powers with mu0 = 1 those of light that was scattered once.
-SHARED_FN SlabPowers sppScatteredOnce(SHARED_IN(SppConstants) leaves, Number depth, Number thickness) {
+SHARED_FN SlabPowers sppScatteredOnce(SHARED_IN(SppRates) leaves, Number depth, Number thickness) {
   Number direct = directPower(depth, Number(1.0f));
   SlabPowers once;
   once.down = (Number(1.0f) - leaves.loss) * depth * direct;

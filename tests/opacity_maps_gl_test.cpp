@@ -11,6 +11,7 @@
 #include "plants/weber_penn.hpp"
 #include "render/gl/opacity_map_store.hpp"
 #include "render/gl/opacity_maps.hpp"
+#include "render/gl/too_large.hpp"
 #include "render/stand_geometry.hpp"
 
 namespace {

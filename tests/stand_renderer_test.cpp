@@ -182,7 +182,7 @@ TEST(F26_StandRenderer, ShowsTheFieldOfEachLeafAndSide) {
             shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), 0, 0, normal, -along);
         const std::vector<glm::vec3>& sides = field.sides[tree];
         const glm::vec3 expected =
-            told ? shading.shadeBySides(surface, sides[2 * leaf + same], sides[2 * leaf + 1 - same]).multiple
+            told ? shading.shadeBySides(surface, sides[2 * leaf + same], sides[2 * leaf + 1 - same]).scattered
                  : glm::vec3(0.f);
         const std::array bands{"R", "G", "B"};
         for (int band = 0; band < 3; ++band) {

@@ -37,8 +37,8 @@ KindOptics opticsOf(const TreeKind& kind) {
     optics.leaf_gloss[band] = leaf.gloss;
     optics.gloss_entering[band] = std::max(1.f - leaf.gloss * mean_albedo, 1e-6f);
     optics.wood_reflectance[band] = kind.wood_reflectance[band];
-    const spp::SppConstants slab =
-        spp::sppConstants(1.f, leaf.albedo(), spp::sphericalLeafForwardShare(leaf.reflectance, leaf.transmittance));
+    const spp::SppRates slab =
+        spp::sppRates(1.f, leaf.albedo(), spp::sphericalLeafForwardShare(leaf.reflectance, leaf.transmittance));
     optics.slab_rate[band] = slab.rate;
     optics.slab_loss[band] = slab.loss;
     optics.slab_backward[band] = slab.backward;

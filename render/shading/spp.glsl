@@ -1,7 +1,7 @@
 // (S2, S6) The simplified plane-parallel slab, compensated for the edge of the crown: by 1 where the model does not.
 
-SppConstants slabOf(uint kind, int band) {
-  SppConstants leaves;
+SppRates slabOf(uint kind, int band) {
+  SppRates leaves;
   leaves.rate = kinds[kind].slab_rate[band];
   leaves.loss = kinds[kind].slab_loss[band];
   leaves.backward = kinds[kind].slab_backward[band];
@@ -12,7 +12,7 @@ Scattered scatteredLight(Surface surface, Foliage foliage, float thickness, floa
   float direct = directPower(foliage.before, 1.0f);
   HalvesLight diffuse, once;
   for (int band = 0; band < 3; ++band) {
-    SppConstants leaves = slabOf(surface.kind, band);
+    SppRates leaves = slabOf(surface.kind, band);
     SlabPowers powers = sppPowersOf(leaves, foliage.before, thickness);
     diffuse.down[band] = compensation * max(powers.down - direct, 0.0f);
     diffuse.up[band] = compensation * powers.up;

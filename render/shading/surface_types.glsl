@@ -10,7 +10,7 @@ struct KindOptics {
   vec4 leaf_gloss;    // intensity rho_s (R20); w: roughness, 0 for leaves without a gloss
   vec4 gloss_entering;  // mean share that such a gloss lets in
   vec4 wood_reflectance;
-  vec4 slab_rate, slab_loss, slab_backward;  // SppConstants of its leaves, lit along the slab's normal (S2)
+  vec4 slab_rate, slab_loss, slab_backward;  // SppRates of its leaves, lit along the slab's normal (S2)
 };
 
 // A sun.
