@@ -240,8 +240,9 @@ TEST(R27_StandRenderer, ShadesAsCppDoes) {
                       kShading * (1.f + 10.f * shaded.direct[band]));
           ASSERT_NEAR(at(("multiple." + name).c_str()), shaded.scattered[band] - shaded.single[band],
                       kShading * (1.f + shaded.scattered[band]));
-          if (tellsSingle(model))
+          if (tellsSingle(model)) {
             ASSERT_NEAR(at(("single." + name).c_str()), shaded.single[band], kShading * (1.f + shaded.single[band]));
+          }
         }
       }
     EXPECT_GT(leaves, 1000);
