@@ -21,3 +21,30 @@ const Kernel& bestOf(std::initializer_list<const Kernel*> builds) {
 }
 
 }  // namespace sunfleck
+
+// Declares a kernel's builds, constants `name` of type `Kernel` in namespaces named after the instruction sets, and
+// bestBuild(), which gives the one that suits the machine. Once in a file, in the namespace that holds these.
+#ifdef SUNFLECK_X86
+#define SUNFLECK_BUILDS(Kernel, name)                                                            \
+  namespace baseline {                                                                           \
+  extern const Kernel name;                                                                      \
+  }                                                                                              \
+  namespace avx2 {                                                                               \
+  extern const Kernel name;                                                                      \
+  }                                                                                              \
+  namespace avx512 {                                                                             \
+  extern const Kernel name;                                                                      \
+  }                                                                                              \
+  static const Kernel& bestBuild() {                                                             \
+    static const Kernel& best = sunfleck::bestOf({&baseline::name, &avx2::name, &avx512::name}); \
+    return best;                                                                                 \
+  }
+#else
+#define SUNFLECK_BUILDS(Kernel, name) \
+  namespace baseline {                \
+  extern const Kernel name;           \
+  }                                   \
+  static const Kernel& bestBuild() {  \
+    return baseline::name;            \
+  }
+#endif

@@ -4,25 +4,10 @@
 
 namespace sunfleck::pp {
 
-namespace baseline {
-extern const detail::Kernel the_kernel;
-}
-#ifdef SUNFLECK_X86
-namespace avx2 {
-extern const detail::Kernel the_kernel;
-}
-namespace avx512 {
-extern const detail::Kernel the_kernel;
-}
-#endif
+SUNFLECK_BUILDS(detail::Kernel, the_kernel)
 
 const detail::Kernel& detail::kernel() {
-#ifdef SUNFLECK_X86
-  static const Kernel& best = bestOf({&baseline::the_kernel, &avx2::the_kernel, &avx512::the_kernel});
-#else
-  static const Kernel& best = baseline::the_kernel;
-#endif
-  return best;
+  return bestBuild();
 }
 
 }  // namespace sunfleck::pp

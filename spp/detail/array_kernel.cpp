@@ -4,25 +4,10 @@
 
 namespace sunfleck::spp {
 
-namespace baseline {
-extern const detail::ArrayKernel the_kernel;
-}
-#ifdef SUNFLECK_X86
-namespace avx2 {
-extern const detail::ArrayKernel the_kernel;
-}
-namespace avx512 {
-extern const detail::ArrayKernel the_kernel;
-}
-#endif
+SUNFLECK_BUILDS(detail::ArrayKernel, the_kernel)
 
 const detail::ArrayKernel& detail::arrayKernel() {
-#ifdef SUNFLECK_X86
-  static const ArrayKernel& best = bestOf({&baseline::the_kernel, &avx2::the_kernel, &avx512::the_kernel});
-#else
-  static const ArrayKernel& best = baseline::the_kernel;
-#endif
-  return best;
+  return bestBuild();
 }
 
 }  // namespace sunfleck::spp
