@@ -37,19 +37,60 @@ void addTo(Sums& sums, const Lanes& values) {
   for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += double{values[lane]};
 }
 
-// The state of up to kLanes problems. The last entry of each vector is the ground's.
+// What one kind of element does to light, in each problem [1].
+struct KindOptics {
+  Lanes reflectance{}, transmittance{};
+};
+
+// How light goes back where it came from at each side. Of the light that comes to an element along a line, `back` of
+// what it reflects returns along that line, more than of what comes along others. Solving that for the two ends of a
+// line gives (F7): each sends A + e B, where B is what the other sends by itself and e = back reflectance.
+struct Returning {
+  std::vector<float> back;           // of each element: near return, less what its lines return anyway
+  std::vector<Lanes> own, gain;      // of each side: how much comes back of what it sends, and of all the rest
+
+  Returning(const FieldGeometry& geometry, std::span<const KindOptics> optics)
+      : back(geometry.elements.size()), own(2 * back.size()), gain(2 * back.size()) {
+    const LineExchange& exchange = geometry.exchange;
+    overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        back[i] = geometry.near_return[geometry.kinds[i]] - 1.f / static_cast<float>(std::max(exchange.lines[i], 1u));
+    });
+    overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
+        Lanes sum{};
+        for (std::uint64_t link = exchange.first[side]; link < exchange.first[side + 1]; ++link) {
+          const std::size_t other = exchange.sees[link] / 2;
+          sum += back[other] * optics[geometry.kinds[other]].reflectance;
+        }
+        const auto met = static_cast<float>(std::max<std::uint64_t>(exchange.first[side + 1] - exchange.first[side], 1));
+        const Lanes here = back[side / 2] * optics[geometry.kinds[side / 2]].reflectance;
+        gain[side] = 1.f / (1.f - here * sum / met);
+        own[side] = gain[side] * sum;
+      }
+    });
+  }
+};
+
+// The state of up to kLanes problems: the light of each side that did not come straight from a sun. The last entry of
+// each vector is the ground's.
 class Solve {
  public:
-  Solve(const FieldElements& elements, const LineExchange& exchange, std::span<const std::uint32_t> kinds,
-        std::span<const FieldProblem> problems, bool periodic, double recollision, const SolverEffort& effort)
-      : elements_(elements),
-        exchange_(exchange),
-        kinds_(kinds),
+  Solve(const FieldGeometry& geometry, std::span<const FieldProblem> problems, double recollision,
+        const SolverEffort& effort)
+      : elements_(geometry.elements),
+        exchange_(geometry.exchange),
+        kinds_(geometry.kinds),
         problems_(problems),
-        periodic_(periodic),
+        periodic_(geometry.periodic),
         recollision_(recollision),
-        effort_(effort) {
-    readOptics();
+        effort_(effort),
+        optics_(opticsOf(problems)),
+        returning_(geometry, optics_) {
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) ground_albedo_[lane] = problems_[lane].ground_albedo;
+    // The ground is as large as its lines make it.
+    ground_area_ = exchange_.line_power / kPi * static_cast<double>(exchange_.all_lines);
+    setWeights();
     makeSource();
   }
 
@@ -71,50 +112,105 @@ class Solve {
   std::size_t count() const { return elements_.size(); }
   std::size_t ground() const { return 2 * count(); }
 
-  void readOptics() {
-    const std::size_t kinds = problems_.front().optics.size();
-    reflectance_.resize(kinds);
-    transmittance_.resize(kinds);
-    for (std::size_t kind = 0; kind < kinds; ++kind)
-      for (std::size_t lane = 0; lane < problems_.size(); ++lane) {
-        reflectance_[kind][lane] = problems_[lane].optics[kind].reflectance;
-        transmittance_[kind][lane] = problems_[lane].optics[kind].transmittance;
+  static std::vector<KindOptics> opticsOf(std::span<const FieldProblem> problems) {
+    std::vector<KindOptics> optics(problems.front().optics.size());
+    for (std::size_t kind = 0; kind < optics.size(); ++kind)
+      for (std::size_t lane = 0; lane < problems.size(); ++lane) {
+        optics[kind].reflectance[lane] = problems[lane].optics[kind].reflectance;
+        optics[kind].transmittance[lane] = problems[lane].optics[kind].transmittance;
       }
-    albedo_ = largestAlbedo(problems_);
-    for (std::size_t lane = 0; lane < problems_.size(); ++lane) ground_albedo_[lane] = problems_[lane].ground_albedo;
-    // The ground is as large as its lines make it.
-    ground_area_ = exchange_.line_power / kPi * static_cast<double>(exchange_.all_lines);
-    weight_.resize(2 * count() + 1);
-    for (std::size_t i = 0; i < count(); ++i)
-      weight_[2 * i] = weight_[2 * i + 1] = static_cast<float>(exchange_.lines[i]) * albedo_.of_kinds[kinds_[i]];
-    weight_[ground()] = periodic_ ? static_cast<float>(static_cast<double>(exchange_.all_lines)) * albedo_.ground : 0.f;
+    return optics;
   }
 
-  // Direct light, scaled so that its power is what the elements, as large as their lines make them, pass on; light of
-  // the sky and, without a period, of the ground.
+  void setWeights() {
+    const FieldAlbedo albedo = largestAlbedo(problems_);
+    weight_.resize(2 * count() + 1);
+    for (std::size_t i = 0; i < count(); ++i)
+      weight_[2 * i] = weight_[2 * i + 1] = static_cast<float>(exchange_.lines[i]) * albedo.of_kinds[kinds_[i]];
+    weight_[ground()] = periodic_ ? static_cast<float>(static_cast<double>(exchange_.all_lines)) * albedo.ground : 0.f;
+  }
+
+  // Irradiance by lines of a side per sum over them of radiance, in units of 1 / pi.
+  float perLine(std::size_t side) const { return 1.f / static_cast<float>(std::max(exchange_.lines[side / 2], 1u)); }
+
+  // Light before it is scattered from element to element: suns' light scattered once; light of the sky and, without a
+  // period, of the ground.
   void makeSource() {
     source_.assign(2 * count() + 1, Lanes{});
+    direct_.assign(2 * count(), Lanes{});
     for (std::size_t lane = 0; lane < problems_.size(); ++lane) {
-      const FieldProblem& problem = problems_[lane];
-      if (problem.direct.empty()) continue;
-      double power = 0., by_lines = 0.;
-      for (std::size_t side = 0; side < ground(); ++side) {
-        power += double{problem.direct[side]} * double{elements_.area[side / 2]};
-        by_lines += double{problem.direct[side]} * exchange_.lines[side / 2] * exchange_.line_power / kPi;
-      }
-      const double scale = by_lines > 0. ? power / by_lines : 0.;
-      balance_[lane].in = power + (periodic_ ? problem.direct_ground : 0.);
+      const DirectLight* const sun = problems_[lane].direct;
+      if (!sun) continue;
+      // Scaled so that its power is what the elements, as large as their lines make them, pass on.
+      double by_lines = 0.;
       for (std::size_t side = 0; side < ground(); ++side)
-        source_[side][lane] = static_cast<float>(scale * double{problem.direct[side]});
-      if (periodic_) source_[ground()][lane] = static_cast<float>(problem.direct_ground / ground_area_);
+        by_lines += double{sun->irradiance[side]} * exchange_.lines[side / 2] * exchange_.line_power / kPi;
+      scale_[lane] = by_lines > 0. ? static_cast<float>(sun->power / by_lines) : 0.f;
+      balance_[lane].in = sun->power + sun->ground_power;
+      for (std::size_t side = 0; side < ground(); ++side) direct_[side][lane] = scale_[lane] * sun->irradiance[side];
+      if (periodic_) source_[ground()][lane] = static_cast<float>(sun->ground_power / ground_area_);
     }
-    direct_ = source_;
+    for (std::size_t first = 0; first < problems_.size();) {
+      std::size_t last = first + 1;
+      while (last < problems_.size() && problems_[last].direct == problems_[first].direct) ++last;
+      if (problems_[first].direct) addFirstScattering(first, last);
+      first = last;
+    }
     for (std::size_t lane = 0; lane < problems_.size(); ++lane) addOutside(lane);
+  }
+
+  // (F6) Light of the sun that is common to lanes [first, last), scattered once.
+  void addFirstScattering(std::size_t first, std::size_t last) {
+    const DirectLight& sun = *problems_[first].direct;
+    const LitPlaces* const lit = problems_[first].lit;
+    Lanes scale{};
+    for (std::size_t lane = first; lane < last; ++lane) scale[lane] = scale_[lane];
+    const std::span<const float> spread = lit ? lit->spread : sun.irradiance;
+    // What is sent by a place of a side, times pi.
+    const auto sent = [&](std::size_t side, LitPlaces::Lit how) {
+      const KindOptics& optics = optics_[kinds_[side / 2]];
+      Lanes light = optics.reflectance * spread[side] + optics.transmittance * spread[side ^ 1];
+      if (how == LitPlaces::kSameSide) light += optics.reflectance * lit->irradiance[side];
+      if (how == LitPlaces::kOtherSide) light += optics.transmittance * lit->irradiance[side ^ 1];
+      return light;
+    };
+    const auto mean = [&](std::size_t side) {
+      const KindOptics& optics = optics_[kinds_[side / 2]];
+      return optics.reflectance * sun.irradiance[side] + optics.transmittance * sun.irradiance[side ^ 1];
+    };
+    std::vector<Sums> up((count() + kBlock - 1) / kBlock), down(up.size());
+    overBlocks(count(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
+        Lanes sum{};
+        for (std::uint64_t i = exchange_.first[side]; i < exchange_.first[side + 1]; ++i)
+          sum += sent(exchange_.sees[i], lit ? lit->seen[i] : LitPlaces::kDark);
+        source_[side] +=
+            scale * perLine(side) * (returning_.gain[side] * sum + returning_.own[side] * mean(side));
+        for (std::uint64_t i = exchange_.first_outside[side]; i < exchange_.first_outside[side + 1]; ++i)
+          addTo((exchange_.directions[exchange_.outside[i]].z > 0.f ? down : up)[block],
+                scale * sent(side, lit ? lit->open[i] : LitPlaces::kDark));
+      }
+    });
+    for (std::size_t lane = first; lane < last; ++lane) {
+      double upward = 0., downward = 0.;
+      for (const Sums& part : up) upward += part[lane];
+      for (const Sums& part : down) downward += part[lane];
+      balance_[lane].out_up += upward * exchange_.line_power / kPi;
+      if (periodic_)
+        source_[ground()][lane] += static_cast<float>(downward * exchange_.line_power / kPi / ground_area_);
+      else
+        balance_[lane].out_down += downward * exchange_.line_power / kPi;
+    }
+  }
+
+  // Radiance of the ground around a stand without period.
+  double groundBeyond(std::size_t lane) const {
+    return periodic_ ? 0. : double{problems_[lane].ground_albedo} * double{problems_[lane].ground_open} / kPi;
   }
 
   void addOutside(std::size_t lane) {
     const FieldProblem& problem = problems_[lane];
-    const double of_ground = periodic_ ? 0. : double{problem.ground_albedo} * double{problem.ground_open} / kPi;
+    const double of_ground = groundBeyond(lane);
     if (problem.outside.empty() && of_ground == 0.) return;
     std::vector<double> entering((count() + kBlock - 1) / kBlock);
     overBlocks(count(), [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -138,20 +234,25 @@ class Solve {
         exchange_.line_power * (std::accumulate(entering.begin(), entering.end(), 0.) + (periodic_ ? free : 0.));
   }
 
-  // (F4) Radiance that each side sends out.
+  // (F4) Radiance that each side sends out by itself: without what goes back where it came from.
   void radiate() {
     radiance_.resize(2 * count());
     const auto over_pi = static_cast<float>(1. / kPi);
     overBlocks(count(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Lanes reflectance = over_pi * reflectance_[kinds_[i]],
-                    transmittance = over_pi * transmittance_[kinds_[i]];
+        const KindOptics& optics = optics_[kinds_[i]];
+        const Lanes reflectance = over_pi * (1.f - returning_.back[i]) * optics.reflectance,
+                    transmittance = over_pi * optics.transmittance;
         const Lanes front = light_[2 * i], back = light_[2 * i + 1];
         radiance_[2 * i] = reflectance * front + transmittance * back;
         radiance_[2 * i + 1] = reflectance * back + transmittance * front;
       }
     });
     ground_radiance_ = over_pi * (ground_albedo_ * light_[ground()]);
+  }
+  // The share of radiance that comes from outside along a line that a side sends back along it.
+  Lanes returned(std::size_t side) const {
+    return returning_.back[side / 2] * optics_[kinds_[side / 2]].reflectance;
   }
 
   // (F4) The light after one more passage, its difference from the light before it, and the sums that Anderson's
@@ -188,7 +289,8 @@ class Solve {
       passed_[side] = passed;
       const Lanes weight = all(weight_[side]);
       addTo(of_block.squares, weight * change * change);
-      addTo(of_block.light_squares, weight * passed * passed);
+      const Lanes light = side < ground() ? passed + direct_[side] : passed;
+      addTo(of_block.light_squares, weight * light * light);
       for (std::size_t j = 0; j < kept; ++j) {
         const Lanes weighted = weight * change_steps_[j][side];
         addTo(of_block.with_change[j], weighted * change);
@@ -206,14 +308,13 @@ class Solve {
           other += radiance_[source[1]];
         }
         if (source < last) sum += radiance_[*source];
-        sum += other;
+        sum = returning_.gain[side] * (sum + other) + returning_.own[side] * radiance_[side];
         const std::uint32_t below = exchange_.below[side];
         if (periodic_ && below > 0) {
           sum += static_cast<float>(below) * ground_radiance_;
-          addTo(of_block.down, static_cast<float>(below) * radiance_[side]);
+          addTo(of_block.down, static_cast<float>(below) * (radiance_[side] + returned(side) * ground_radiance_));
         }
-        const float per_line = static_cast<float>(kPi) / static_cast<float>(std::max(exchange_.lines[side / 2], 1u));
-        take(side, source_[side] + per_line * sum, of_block);
+        take(side, source_[side] + static_cast<float>(kPi) * perLine(side) * sum, of_block);
       }
     });
     Found total;
@@ -313,18 +414,24 @@ class Solve {
       for (std::size_t side = 0; side < ground(); ++side) {
         const std::size_t element = side / 2;
         // An element that no line meets takes after the one before it.
-        solution.scattered[side] = exchange_.lines[element] == 0 && element > 0
-                                       ? solution.scattered[side - 2]
-                                       : std::max(0.f, light_[side][lane] - direct_[side][lane]);
+        solution.scattered[side] = exchange_.lines[element] == 0 && element > 0 ? solution.scattered[side - 2]
+                                                                                : std::max(0.f, light_[side][lane]);
         const ElementOptics& optics = problem.optics[kinds_[element]];
         const double absorbed = (1. - double{optics.reflectance} - double{optics.transmittance}) *
-                                double{light_[side][lane]} * exchange_.lines[element] * area_per_line;
+                                double{light_[side][lane] + direct_[side][lane]} * exchange_.lines[element] *
+                                area_per_line;
         (element < elements_.leaf_elements ? balance.absorbed_leaves : balance.absorbed_wood) += absorbed;
         const auto outside = exchange_.first_outside[side + 1] - exchange_.first_outside[side];
-        below += double{radiance_[side][lane]} * exchange_.below[side];
-        above += double{radiance_[side][lane]} * static_cast<double>(outside - exchange_.below[side]);
+        double from_below = (periodic_ ? double{ground_radiance_[lane]} : groundBeyond(lane)) * exchange_.below[side],
+               from_above = 0.;
+        if (!problem.outside.empty())
+          for (std::uint64_t i = exchange_.first_outside[side]; i < exchange_.first_outside[side + 1]; ++i)
+            from_above += double{problem.outside[exchange_.outside[i]]};
+        const auto back = double{returned(side)[lane]};
+        below += double{radiance_[side][lane]} * exchange_.below[side] + back * from_below;
+        above += double{radiance_[side][lane]} * static_cast<double>(outside - exchange_.below[side]) + back * from_above;
       }
-      balance.out_up = exchange_.line_power * above;
+      balance.out_up += exchange_.line_power * above;
       if (periodic_) {
         solution.ground = double{light_[ground()][lane]};
         balance.absorbed_ground = (1. - double{problem.ground_albedo}) * solution.ground * ground_area_;
@@ -332,7 +439,7 @@ class Solve {
         balance.out_up += exchange_.line_power * static_cast<double>(free) * double{ground_radiance_[lane]};
       } else {
         solution.ground = double{problem.ground_open};
-        balance.out_down = exchange_.line_power * below;
+        balance.out_down += exchange_.line_power * below;
       }
       solution.balance = balance;
       solution.iterations = iterations_;
@@ -349,9 +456,10 @@ class Solve {
   bool periodic_;
   double recollision_;
   SolverEffort effort_;
-  FieldAlbedo albedo_;
-  std::vector<Lanes> reflectance_, transmittance_;  // of each kind
+  std::vector<KindOptics> optics_;  // of each kind
+  Returning returning_;
   Lanes ground_albedo_{}, ground_radiance_{};
+  std::array<float, kLanes> scale_{};  // of direct light
   double ground_area_ = 0.;
   std::vector<float> weight_;  // of each side in sums of squares
   std::vector<Lanes> source_, direct_, light_, passed_, change_, radiance_;
@@ -401,26 +509,39 @@ FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems) {
   FieldAlbedo albedo;
   for (const FieldProblem& problem : problems) {
     albedo.of_kinds.resize(problem.optics.size());
-    for (std::size_t kind = 0; kind < problem.optics.size(); ++kind)
-      albedo.of_kinds[kind] =
-          std::max(albedo.of_kinds[kind], problem.optics[kind].reflectance + problem.optics[kind].transmittance);
+    albedo.reflectance.resize(problem.optics.size());
+    for (std::size_t kind = 0; kind < problem.optics.size(); ++kind) {
+      const ElementOptics& optics = problem.optics[kind];
+      albedo.of_kinds[kind] = std::max(albedo.of_kinds[kind], optics.reflectance + optics.transmittance);
+      albedo.reflectance[kind] = std::max(albedo.reflectance[kind], optics.reflectance);
+    }
     albedo.ground = std::max(albedo.ground, problem.ground_albedo);
   }
   return albedo;
 }
 
 // (F5)
-double recollision(const LineExchange& exchange, std::span<const std::uint32_t> kinds, const FieldAlbedo& albedo,
-                   bool periodic) {
+double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo) {
   constexpr int kMostSteps = 12;
+  const LineExchange& exchange = geometry.exchange;
+  const std::span<const std::uint32_t> kinds = geometry.kinds;
+  const bool periodic = geometry.periodic;
   const std::size_t elements = kinds.size(), ground = 2 * elements;
-  // Lanczos's method on the symmetric matrix D K D, where D^2 is the albedo and K is made symmetric by the square roots
-  // of the lines' numbers.
-  std::vector<float> scale(ground + 1), from(ground + 1), to(ground + 1), before(ground + 1), sent(ground + 1);
-  for (std::size_t side = 0; side < ground; ++side)
-    scale[side] = exchange.lines[side / 2] > 0
-                      ? std::sqrt(albedo.of_kinds[kinds[side / 2]] / static_cast<float>(exchange.lines[side / 2]))
-                      : 0.f;
+  std::vector<KindOptics> optics(albedo.of_kinds.size());
+  for (std::size_t kind = 0; kind < optics.size(); ++kind) optics[kind].reflectance[0] = albedo.reflectance[kind];
+  const Returning returning(geometry, optics);
+  // Lanczos's method on the symmetric matrix D K D + own D^2, where D^2 is what a side sends by itself of what it gets,
+  // and K is made symmetric by the square roots of the lines' numbers.
+  std::vector<float> scale(ground + 1), own(ground + 1), from(ground + 1), to(ground + 1), before(ground + 1),
+      sent(ground + 1);
+  for (std::size_t side = 0; side < ground; ++side) {
+    if (exchange.lines[side / 2] == 0) continue;
+    const std::uint32_t kind = kinds[side / 2];
+    const float sends = std::max(0.f, albedo.of_kinds[kind] - returning.back[side / 2] * albedo.reflectance[kind]) /
+                        static_cast<float>(exchange.lines[side / 2]);
+    scale[side] = std::sqrt(sends * returning.gain[side][0]);
+    own[side] = sends * returning.own[side][0];
+  }
   if (periodic && exchange.all_lines > 0)
     scale[ground] = std::sqrt(albedo.ground / static_cast<float>(exchange.all_lines));
   // Light even on all that scatters is not far from the vector sought.
@@ -451,7 +572,7 @@ double recollision(const LineExchange& exchange, std::span<const std::uint32_t> 
           sum += static_cast<float>(exchange.below[side]) * sent[ground];
           down[block] += double{static_cast<float>(exchange.below[side]) * sent[side]};
         }
-        to[side] = scale[side] * sum;
+        to[side] = scale[side] * sum + own[side] * from[side];
       }
     });
     to[ground] = scale[ground] * static_cast<float>(std::accumulate(down.begin(), down.end(), 0.));
@@ -473,16 +594,14 @@ double recollision(const LineExchange& exchange, std::span<const std::uint32_t> 
 }
 
 // (F4)
-std::vector<FieldSolution> solveField(const FieldElements& elements, const LineExchange& exchange,
-                                      std::span<const std::uint32_t> kinds, std::span<const FieldProblem> problems,
-                                      bool periodic, double recollision, const SolverEffort& effort) {
+std::vector<FieldSolution> solveField(const FieldGeometry& geometry, std::span<const FieldProblem> problems,
+                                      double recollision, const SolverEffort& effort) {
   if (!(recollision < 1. - 1e-6))
     throw InvalidInput(
         "leaf albedo = 1: must be below 1 where light can neither leave nor be absorbed: there is no steady state");
   std::vector<FieldSolution> solutions;
   for (std::size_t first = 0; first < problems.size(); first += kLanes) {
-    Solve solve(elements, exchange, kinds, problems.subspan(first, std::min(kLanes, problems.size() - first)), periodic,
-                recollision, effort);
+    Solve solve(geometry, problems.subspan(first, std::min(kLanes, problems.size() - first)), recollision, effort);
     for (FieldSolution& solution : solve.run()) solutions.push_back(std::move(solution));
   }
   return solutions;

@@ -9,6 +9,7 @@
 #include "core/leaf_optics.hpp"
 #include "field/elements.hpp"
 #include "field/line_exchange.hpp"
+#include "field/lit_places.hpp"
 
 namespace sunfleck {
 
@@ -19,8 +20,8 @@ struct ElementOptics {
 
 // One case to solve: light of one band and from one source, and what it meets.
 struct FieldProblem {
-  std::span<const float> direct;          // of each side [1]; empty: none
-  double direct_ground = 0.;              // with a period: that reaches the ground [m^2]
+  const DirectLight* direct = nullptr;  // of a sun; none: dark
+  const LitPlaces* lit = nullptr;       // and where it falls; none: evenly on each side
   std::span<const float> outside{};       // radiance of the sky in which light travels in each of the exchange's
                                           // directions [1/sr]; 0 for those that rise; empty: none
   std::span<const ElementOptics> optics;  // of each kind
@@ -54,25 +55,32 @@ struct SolverEffort {
 
 // What light meets in some problems, at most.
 struct FieldAlbedo {
-  std::vector<float> of_kinds;  // of each kind of element [1], 0 .. 1
+  std::vector<float> of_kinds;     // of each kind of element [1], 0 .. 1
+  std::vector<float> reflectance;  // its share that is reflected
   float ground = 0.f;           // with a period [1], 0 .. 1
   bool operator==(const FieldAlbedo&) const = default;
 };
 
+// Elements, what they exchange, and how light goes back where it came from.
+struct FieldGeometry {
+  const FieldElements& elements;
+  const LineExchange& exchange;
+  std::span<const std::uint32_t> kinds;  // of each element: which of each problem's optics are its
+  std::span<const float> near_return;    // (F7) of each kind [1]
+  bool periodic;
+};
+
 // (F5) The share of the light that stays in the stand from one scattering to the next, where it is spread as it stays
 // longest: the largest eigenvalue of exchange and albedo together [1], 0 .. 1.
-double recollision(const LineExchange& exchange, std::span<const std::uint32_t> kinds, const FieldAlbedo& albedo,
-                   bool periodic);
+double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo);
 
 FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems);
 
 // (F4) Solves some problems at once, by Anderson's acceleration of the passage of light from element to element
 // (Anderson 1965; Walker & Ni 2011). The result is the same to the bit for any number of threads.
-//   kinds        of each element: which of each problem's optics are its
 //   recollision  of the problems' largestAlbedo()
 // Throws InvalidInput where light that comes in can neither leave nor be absorbed: there is no steady state.
-std::vector<FieldSolution> solveField(const FieldElements& elements, const LineExchange& exchange,
-                                      std::span<const std::uint32_t> kinds, std::span<const FieldProblem> problems,
-                                      bool periodic, double recollision, const SolverEffort& effort = {});
+std::vector<FieldSolution> solveField(const FieldGeometry& geometry, std::span<const FieldProblem> problems,
+                                      double recollision, const SolverEffort& effort = {});
 
 }  // namespace sunfleck

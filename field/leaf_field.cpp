@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/require.hpp"
+#include "field/near_return.hpp"
 #include "sky/sky_shares.hpp"
 
 namespace sunfleck {
@@ -84,7 +85,7 @@ LeafField::LeafField(const FieldEffort& effort)
     };
   };
   graph_.follows(exchange_product_, elements_product_, all(1));
-  graph_.follows(direct_product_, elements_product_, all(kMostSuns));
+  graph_.follows(direct_product_, exchange_product_, all(kMostSuns));
   graph_.follows(recollision_product_, exchange_product_, all(1));
   graph_.follows(solution_product_, recollision_product_, all(kSources));
   graph_.follows(solution_product_, direct_product_,
@@ -101,6 +102,10 @@ void LeafField::setStand(std::span<const std::shared_ptr<const TreeMesh>> kinds,
   stand_ = stand;
   lighting_.kinds.clear();  // what was told of others
   graph_.touchAll(elements_product_);
+}
+
+FieldGeometry LeafField::geometry() const {
+  return {elements_, exchange_, kinds_, near_return_, stand_.period.has_value()};
 }
 
 void LeafField::makeElements() {
@@ -172,11 +177,14 @@ const FieldResult& LeafField::solve(const FieldLighting& lighting) {
   graph_.bring(exchange_product_, kOnly, [&](std::size_t) {
     exchange_ = {};  // its memory before that of the next
     exchange_ = lineExchange(mesh_, elements_, stand_.period, effort_.exchange);
+    near_return_ = nearReturn(elements_, exchange_, kinds_, 2 * meshes_.size());
   });
   std::vector<std::size_t> suns(lighting.suns.size());
   std::iota(suns.begin(), suns.end(), std::size_t{0});
   graph_.bring(direct_product_, suns, [&](std::size_t sun) {
-    direct_[sun] = directLight(mesh_, elements_, stand_.period, lighting_.suns[sun].along, effort_.direct);
+    const SunPicture picture(mesh_, elements_, stand_.period, lighting_.suns[sun].along, effort_.direct);
+    direct_[sun] = directLight(picture, elements_, stand_.period.has_value());
+    lit_[sun] = litPlaces(picture, direct_[sun], exchange_);
   });
   std::vector<std::size_t> sources = suns, stale;
   if (lighting.sky) sources.push_back(kSky);
@@ -190,7 +198,6 @@ const FieldResult& LeafField::solve(const FieldLighting& lighting) {
 
 void LeafField::makeSolutions(std::span<const std::size_t> stale) {
   const Stopwatch watch(graph_.cost(solution_product_).seconds);
-  const bool periodic = stand_.period.has_value();
   std::array<std::vector<ElementOptics>, kBands> optics;
   for (std::size_t band = 0; band < kBands; ++band)
     for (const FieldKind& kind : lighting_.kinds) {
@@ -225,13 +232,13 @@ void LeafField::makeSolutions(std::span<const std::size_t> stale) {
       for (std::size_t other = 0; other < band && source != kSky; ++other) known = known || alike(band, other);
       if (known) continue;
       const float albedo = lighting_.ground_albedo[static_cast<int>(band)];
-      FieldProblem problem{.direct = {}, .optics = optics[band], .ground_albedo = albedo};
+      FieldProblem problem{.optics = optics[band], .ground_albedo = albedo};
       if (source == kSky) {
         problem.outside = outside[band];
         problem.ground_open = static_cast<float>(sky_irradiance[static_cast<int>(band)]);
       } else {
-        problem.direct = direct_[source].irradiance;
-        problem.direct_ground = direct_[source].ground_power;
+        problem.direct = &direct_[source];
+        problem.lit = &lit_[source];
         problem.ground_open = -direct_[source].along.z;
       }
       problems.push_back(problem);
@@ -241,13 +248,13 @@ void LeafField::makeSolutions(std::span<const std::size_t> stale) {
   std::vector<FieldProblem> all_bands;
   for (std::size_t band = 0; band < kBands; ++band)
     all_bands.push_back(
-        {.direct = {}, .optics = optics[band], .ground_albedo = lighting_.ground_albedo[static_cast<int>(band)]});
+        {.optics = optics[band], .ground_albedo = lighting_.ground_albedo[static_cast<int>(band)]});
   graph_.bring(recollision_product_, kOnly, [&](std::size_t) {
     albedo_ = largestAlbedo(all_bands);
-    recollision_ = recollision(exchange_, kinds_, albedo_, periodic);
+    recollision_ = recollision(geometry(), albedo_);
   });
   std::vector<FieldSolution> solutions =
-      solveField(elements_, exchange_, kinds_, problems, periodic, recollision_, effort_.solver);
+      solveField(geometry(), problems, recollision_, effort_.solver);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     auto& of_bands = solutions_[asked[i].source];
     for (std::size_t band = asked[i].band + 1; band < kBands && asked[i].source != kSky; ++band)

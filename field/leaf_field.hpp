@@ -15,6 +15,7 @@
 #include "field/elements.hpp"
 #include "field/field_solver.hpp"
 #include "field/line_exchange.hpp"
+#include "field/lit_places.hpp"
 #include "grid/product_graph.hpp"
 #include "sky/sky_map.hpp"
 
@@ -93,6 +94,7 @@ class LeafField {
   // Light from a sun or, the last, from the sky.
   static constexpr std::size_t kSources = kMostSuns + 1, kSky = kMostSuns;
 
+  FieldGeometry geometry() const;
   void makeElements();
   void makeSolutions(std::span<const std::size_t> stale);
   void compose();
@@ -110,9 +112,11 @@ class LeafField {
   std::vector<std::uint32_t> kinds_;     // of each element: 2 kind of leaves, 2 kind + 1 of wood
   std::vector<std::size_t> first_leaf_;  // of each tree, and one more
   LineExchange exchange_;
+  std::vector<float> near_return_;  // (F7) of kinds_
   FieldAlbedo albedo_;
   double recollision_ = 0.;
   std::array<DirectLight, kMostSuns> direct_;
+  std::array<LitPlaces, kMostSuns> lit_;
   std::array<std::array<FieldSolution, kBands>, kSources> solutions_;
   FieldResult result_;
 };

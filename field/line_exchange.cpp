@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <numeric>
@@ -24,9 +25,10 @@ using detail::sideMet;
 constexpr std::size_t kChunks = 16;               // of axes, whose links are counted and written one after the other
 constexpr std::uint32_t kFirstOnLine = 1u << 31;  // marks a side, of which there are fewer
 
-// What the lines along one axis cross: the sides they come to, line by line; lines that cross nothing left out.
+// What the lines along one axis cross: the sides they come to and where, line by line; lines that cross nothing left out.
 struct AxisCrossings {
   std::vector<std::uint32_t> sides;
+  std::vector<glm::u16vec3> places;
   std::uint64_t lines = 0, free_lines = 0;
 };
 
@@ -48,7 +50,7 @@ void sortLine(Crossing64* begin, Crossing64* end) {
   }
 }
 
-AxisCrossings crossingsAlong(const LineGrid& grid, Work& work) {
+AxisCrossings crossingsAlong(const LineGrid& grid, const PlaceCode& places, Work& work) {
   work.found.clear();
   work.next.assign(grid.lines() + 1, 0);
   grid.cross(0, grid.triangles(), work.spans, [&](std::size_t line, Crossing64 crossing) {
@@ -59,8 +61,9 @@ AxisCrossings crossingsAlong(const LineGrid& grid, Work& work) {
   for (std::uint32_t& next : work.next) sum += std::exchange(next, sum);
   work.sorted.resize(work.found.size());
   for (const auto& [line, crossing] : work.found) work.sorted[work.next[line]++] = crossing;
-  AxisCrossings result{.sides = {}, .lines = grid.lines()};
+  AxisCrossings result{.sides = {}, .places = {}, .lines = grid.lines()};
   result.sides.reserve(work.found.size());
+  result.places.reserve(work.found.size());
   std::uint32_t begin = 0;
   for (std::size_t line = 0; line < grid.lines(); ++line) {
     const std::uint32_t end = work.next[line];
@@ -69,8 +72,10 @@ AxisCrossings crossingsAlong(const LineGrid& grid, Work& work) {
       continue;
     }
     sortLine(&work.sorted[begin], work.sorted.data() + end);
-    for (std::uint32_t i = begin; i < end; ++i)
+    for (std::uint32_t i = begin; i < end; ++i) {
       result.sides.push_back(sideMet(work.sorted[i]) | (i == begin ? kFirstOnLine : 0));
+      result.places.push_back(places.code(grid.place(line, detail::depthOf(work.sorted[i]))));
+    }
     begin = end;
   }
   return result;
@@ -98,7 +103,8 @@ struct ChunkLinks {
   std::vector<std::uint32_t> met, outside;
 };
 
-// Calls link(side, source) and outside(side, direction) for what each side sees on the lines along an axis.
+// Calls link(side, source, place of the source) and outside(side, direction, place of the side) for what each side sees
+// on the lines along an axis.
 template <typename Link, typename Outside>
 void forLinks(const AxisCrossings& axis, std::size_t number, std::size_t axes, const Link& link,
               const Outside& outside) {
@@ -107,21 +113,29 @@ void forLinks(const AxisCrossings& axis, std::size_t number, std::size_t axes, c
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t side = axis.sides[i] & ~kFirstOnLine;
     if (axis.sides[i] & kFirstOnLine)
-      outside(side, along);
+      outside(side, along, axis.places[i]);
     else
-      link(side, (axis.sides[i - 1] & ~kFirstOnLine) ^ 1u);
+      link(side, (axis.sides[i - 1] & ~kFirstOnLine) ^ 1u, axis.places[i - 1]);
     if (i + 1 == count || axis.sides[i + 1] & kFirstOnLine)
-      outside(side ^ 1u, against);
+      outside(side ^ 1u, against, axis.places[i]);
     else
-      link(side ^ 1u, axis.sides[i + 1]);
+      link(side ^ 1u, axis.sides[i + 1], axis.places[i + 1]);
   }
 }
 
 }  // namespace
 
+PlaceCode::PlaceCode(const TreeMesh& mesh, const std::optional<glm::vec2>& period) : periodic_(period.has_value()) {
+  const Bounds box = bounds(mesh);
+  glm::vec3 size = glm::max(box.size(), glm::vec3(1e-6f));
+  if (period) size = {period->x, period->y, size.z};
+  low_ = box.low;
+  per_metre_ = 65'536.f / size;
+}
+
 std::size_t LineExchange::memoryBytes() const {
   return 8 * (first.size() + first_outside.size()) + 4 * (sees.size() + lines.size() + below.size()) +
-         2 * outside.size();
+         2 * outside.size() + sizeof(glm::u16vec3) * (seen_at.size() + open_at.size());
 }
 
 // (F2)
@@ -140,7 +154,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
                                2. * leaves / static_cast<double>(elements.leaf_elements));
   const double line_area = 0.5 * area / double{effort.crossings};
   const double crossings = 0.5 * total / line_area * static_cast<double>(axes);
-  const double bytes = crossings * 40. + static_cast<double>(elements.size()) * (8. * kChunks + 40.);
+  const double bytes = crossings * 56. + static_cast<double>(elements.size()) * (8. * kChunks + 40.);
   if (const double available = availableMemory(); bytes > available)
     throw InvalidInput("the light field: must be of fewer leaves or lines: it would take " +
                        std::to_string(static_cast<long long>(bytes * 1e-6)) + " MB, and there are " +
@@ -150,6 +164,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   const detail::StandSurfaces surfaces{&mesh, &elements, period};
   std::vector<AxisCrossings> found(axes);
   LineExchange exchange;
+  exchange.places = PlaceCode(mesh, period);
   const std::size_t sides = 2 * elements.size();
   std::vector<ChunkLinks> chunks(kChunks);
   const auto axesOfChunk = [&](std::size_t chunk) {
@@ -165,10 +180,11 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
       // Offsets by the R2 sequence (Roberts 2018), so that no place is missed by all axes.
       const auto number = static_cast<double>(axis) + 0.5;
       const glm::dvec2 offset(number * 0.7548776662466927, number * 0.5698402909980532);
-      found[axis] = crossingsAlong(LineGrid(surfaces, along[axis], line_area, offset - glm::floor(offset)), work);
+      found[axis] = crossingsAlong(LineGrid(surfaces, along[axis], line_area, offset - glm::floor(offset)),
+                                   exchange.places, work);
       forLinks(
-          found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t) { ++links.met[side]; },
-          [&](std::uint32_t side, std::uint16_t) { ++links.outside[side]; });
+          found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t, const glm::u16vec3&) { ++links.met[side]; },
+          [&](std::uint32_t side, std::uint16_t, const glm::u16vec3&) { ++links.outside[side]; });
     }
   });
 
@@ -186,17 +202,23 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   };
   exchange.sees.resize(starts(exchange.first, &ChunkLinks::met));
   exchange.outside.resize(starts(exchange.first_outside, &ChunkLinks::outside));
+  exchange.seen_at.resize(exchange.sees.size());
+  exchange.open_at.resize(exchange.outside.size());
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
     ChunkLinks& links = chunks[chunk];
     const auto [begin, end] = axesOfChunk(chunk);
     for (std::size_t axis = begin; axis < end; ++axis)
       forLinks(
           found[axis], axis, axes,
-          [&](std::uint32_t side, std::uint32_t source) {
-            exchange.sees[exchange.first[side] + links.met[side]++] = source;
+          [&](std::uint32_t side, std::uint32_t source, const glm::u16vec3& place) {
+            const std::uint64_t link = exchange.first[side] + links.met[side]++;
+            exchange.sees[link] = source;
+            exchange.seen_at[link] = place;
           },
-          [&](std::uint32_t side, std::uint16_t direction) {
-            exchange.outside[exchange.first_outside[side] + links.outside[side]++] = direction;
+          [&](std::uint32_t side, std::uint16_t direction, const glm::u16vec3& place) {
+            const std::uint64_t link = exchange.first_outside[side] + links.outside[side]++;
+            exchange.outside[link] = direction;
+            exchange.open_at[link] = place;
           });
   });
   exchange.lines.resize(elements.size());

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/common.hpp>
+#include <glm/gtc/type_precision.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +22,25 @@ struct ExchangeEffort {
   float crossings = 1.f;
 };
 
+// Places in a stand, to 1/65536 of its box or period.
+class PlaceCode {
+ public:
+  PlaceCode() = default;
+  PlaceCode(const TreeMesh& mesh, const std::optional<glm::vec2>& period);
+  glm::u16vec3 code(const glm::vec3& place) const {
+    glm::ivec3 whole(glm::floor((place - low_) * per_metre_));
+    whole.z = glm::clamp(whole.z, 0, 65'535);
+    // Beyond the end of a period the number overflows, as it should.
+    if (!periodic_) whole = glm::clamp(whole, 0, 65'535);
+    return glm::u16vec3(whole);
+  }
+  glm::vec3 place(const glm::u16vec3& code) const { return low_ + (glm::vec3(code) + 0.5f) / per_metre_; }
+
+ private:
+  glm::vec3 low_{0.f}, per_metre_{1.f};
+  bool periodic_ = false;
+};
+
 // (F2) Who sees whom: parallel lines in directions spread evenly over the sphere, as many per area in each, and the
 // elements that each line crosses, in order. Neighbours on a line see each other, from the sides that face each other;
 // the first and the last on a line see the outside. All lines count alike, so that what one sends to another over a
@@ -29,11 +51,14 @@ struct LineExchange {
   // something, sees[first[side]] up to sees[first[side + 1]].
   std::vector<std::uint64_t> first;
   std::vector<std::uint32_t> sees;
+  std::vector<glm::u16vec3> seen_at;  // where on the element that it sees, as sees; see `places`
   std::vector<std::uint32_t> lines;  // of each element: those that cross it; as many come to either side
   // Of each side, the directions in which light comes to it from outside, as first and sees.
   std::vector<std::uint64_t> first_outside;
   std::vector<std::uint16_t> outside;
+  std::vector<glm::u16vec3> open_at;      // where on its own element, as outside
   std::vector<std::uint32_t> below;       // of each side, those of them that rise: from the ground
+  PlaceCode places;
   std::vector<Direction> directions;      // in which light travels: along each axis, then against it
   std::vector<std::uint64_t> free_lines;  // with a period: of each axis, lines that meet nothing
   std::uint64_t all_lines = 0;            // with a period: of all axes

@@ -38,6 +38,12 @@ Crossing64 crossing64(float depth, std::uint32_t side) {
   return Crossing64{bits & kSign ? ~bits : bits | kSign} << 32 | side;
 }
 
+float depthOf(Crossing64 crossing) {
+  constexpr std::uint32_t kSign = 1u << 31;
+  const auto bits = static_cast<std::uint32_t>(crossing >> 32);
+  return std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits);
+}
+
 // (F2)
 LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset)
     : surfaces_(surfaces) {
@@ -54,6 +60,9 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
     up = scale.y * glm::vec3(0.f, 1.f, -along.y / along.z);
     depth = {0.f, 0.f, 1.f / along.z};
     mirrored_ = along.z < 0.f;
+    column_step_ = {1.f / scale.x, 0.f, 0.f};
+    row_step_ = {0.f, 1.f / scale.y, 0.f};
+    along_ = along;
   } else {
     const Axes axes = axesAlong(along);
     const auto scale = static_cast<float>(1. / std::sqrt(area));
@@ -61,7 +70,13 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
     up = scale * axes.up;
     depth = axes.along;
     line_area_ = area;
+    column_step_ = axes.right / scale;
+    row_step_ = axes.up / scale;
+    along_ = along;
   }
+  right_ = right;
+  up_ = up;
+  depth_ = depth;
   Bounds box;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     projected_[i] = {glm::dot(vertices[i], right), glm::dot(vertices[i], up), glm::dot(vertices[i], depth)};
@@ -75,6 +90,8 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
     pixels_.corner = glm::floor(glm::dvec2(box.low) - offset) + offset;
     size_ = glm::ivec2(glm::ceil(glm::dvec2(box.high) - pixels_.corner)) + 1;
   }
+  shift_ = pixels_.corner;
+  corner_ = (shift_.x + 0.5f) * column_step_ + (shift_.y + 0.5f) * row_step_;
   pixels_.pixels_per_metre = 1.;
   const glm::ivec2 whole = glm::ivec2(glm::ceil(glm::dvec2(box.high) - pixels_.corner)) + 1;
   pixels_.columns = whole.x;

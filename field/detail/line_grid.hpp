@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -24,6 +26,7 @@ inline std::uint32_t sideMet(Crossing64 crossing) {
   return static_cast<std::uint32_t>(crossing);
 }
 Crossing64 crossing64(float depth, std::uint32_t side);
+float depthOf(Crossing64 crossing);
 
 // Sides of a stand's elements.
 struct StandSurfaces {
@@ -43,6 +46,28 @@ class LineGrid {
   double lineArea() const { return line_area_; }  // [m^2]
   std::size_t lines() const { return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y); }
   glm::ivec2 size() const { return size_; }
+
+  // Where a line is at a depth [m]; with a period, but for whole periods.
+  glm::vec3 place(std::size_t line, float depth) const {
+    const auto columns = static_cast<std::size_t>(size_.x);
+    return corner_ + static_cast<float>(line % columns) * column_step_ + static_cast<float>(line / columns) * row_step_ +
+           depth * along_;
+  }
+  // The line whose pixel a place lies in; lines() if in none.
+  std::size_t lineAt(const glm::vec3& place) const {
+    const glm::vec2 pixel(glm::dot(place, right_) - shift_.x, glm::dot(place, up_) - shift_.y);
+    int column = static_cast<int>(std::floor(pixel.x)), row = static_cast<int>(std::floor(pixel.y));
+    if (surfaces_.period) {
+      column = (column % size_.x + size_.x) % size_.x;
+      row = (row % size_.y + size_.y) % size_.y;
+    } else if (column < 0 || row < 0 || column >= size_.x || row >= size_.y) {
+      return lines();
+    }
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(size_.x) + static_cast<std::size_t>(column);
+  }
+
+  // As in crossings [m].
+  float depthAt(const glm::vec3& place) const { return glm::dot(place, depth_); }
 
   // Triangles of the stand: those of leaves, then those of wood.
   std::size_t triangles() const;
@@ -92,6 +117,10 @@ class LineGrid {
   PixelGrid pixels_{};                // of the stand; with a period they may go round it several times
   glm::ivec2 size_{0};
   double line_area_ = 0.;
+  glm::vec3 right_{}, up_{}, depth_{};               // which give a place's pixel, but for shift_, and depth
+  glm::vec2 shift_{};                                // [pixel]
+  glm::vec3 corner_{}, column_step_{}, row_step_{};  // of the middles of pixels at depth 0 [m]
+  glm::vec3 along_{};                                // [m] per depth
   ScanConversion scan_ = scanConversion();
 };
 
