@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numbers>
 #include <numeric>
 
@@ -19,6 +21,7 @@ using Sums = std::array<double, kLanes>;
 
 constexpr std::size_t kBlock = 512;  // elements that are worth a task, and whose sums are rounded together
 constexpr std::size_t kHistory = 3;  // of Anderson's acceleration
+static const float LIM = std::getenv("LIM") ? static_cast<float>(std::atof(std::getenv("LIM"))) : .0625f;
 constexpr double kPi = std::numbers::pi;
 
 // Calls work(block, begin, end) for blocks of `count` elements, in parallel.
@@ -54,7 +57,8 @@ struct Returning {
     const LineExchange& exchange = geometry.exchange;
     overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        back[i] = geometry.near_return[geometry.kinds[i]] - 1.f / static_cast<float>(std::max(exchange.lines[i], 1u));
+    { back[i] = geometry.near_return[geometry.kinds[i]] - std::min(LIM, 1.f / static_cast<float>(std::max(exchange.lines[i], 1u)));
+        static const bool plain = std::getenv("PLAIN"); if (plain) back[i] = 0.f; }
     });
     overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
@@ -590,7 +594,8 @@ double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo) {
     std::swap(before, from);
     std::swap(from, to);
   }
-  return std::min(1., largest.value + norm * largest.last);
+  std::fprintf(stderr, "recollision %.4f + %.4f steps %zu near %.4f\n", largest.value, norm * largest.last, diagonal.size(), double{geometry.near_return[0]});
+  return std::min(double{std::max(albedo.ground, *std::max_element(albedo.of_kinds.begin(), albedo.of_kinds.end()))}, largest.value + norm * largest.last);
 }
 
 // (F4)

@@ -69,7 +69,9 @@ std::uint32_t SunPicture::litSide(std::uint32_t element, const glm::vec3& place)
   if (crossing != kNothing) {
     const std::uint32_t met = detail::sideMet(crossing);
     if (met / 2 == element) return met;
-    if (grid_.depthAt(place) > detail::depthOf(crossing)) return kNoSide;
+    const std::uint32_t leaf = elements_->leaf[element];
+    const bool same_leaf = leaf != FieldElements::kWood && leaf == elements_->leaf[met / 2];
+    if (!same_leaf && grid_.depthAt(place) > detail::depthOf(crossing)) return kNoSide;
   }
   // The pixel's middle misses the element, or lies on one behind it.
   return 2 * element + (glm::dot(elements_->normal[element], along_) > 0.f);
