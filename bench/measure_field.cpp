@@ -166,11 +166,11 @@ Row judge(const Case& of, std::size_t band, const std::string& method, const Ans
   const ForwardResult& truth = of.truth[band];
   const ModelErrors errors = modelErrors(answer.irradiance, truth.leaf_irradiance, of.groups);
   const double noise = *referenceNoise(truth.leaf_irradiance, truth.leaf_standard_error);
-  double dm = 0, dt = 0; double direct_squares = 0., direct_truth = 0.;
+  double direct_squares = 0., direct_truth = 0.;
   for (std::size_t i = 0; i < answer.direct.size(); ++i) {
     const Estimate& direct = truth.leaf_direct[i];
     direct_squares += std::pow(double{answer.direct[i]} - direct.value, 2) - std::pow(direct.standard_error, 2);
-    direct_truth += direct.value * direct.value; dm += double{answer.direct[i]}; dt += direct.value;
+    direct_truth += direct.value * direct.value;
   }
   const auto without = [](double all, double part) { return std::sqrt(std::max(0., all * all - part * part)); };
   return {
@@ -186,7 +186,7 @@ Row judge(const Case& of, std::size_t band, const std::string& method, const Ans
       .leaf = 100. * without(*errors.rms_leaf, noise),
       .leaf_noise = 100. * noise,
       .bias = 100. * *errors.bias,
-      .direct = (std::fprintf(stderr, "DIRECT %.5f\n", dm / dt - 1), 100.) * std::sqrt(std::max(0., direct_squares / direct_truth)),
+      .direct = 100. * std::sqrt(std::max(0., direct_squares / direct_truth)),
       .iterations = answer.iterations,
       .error_bound = answer.error_bound,
       .rest = answer.rest,

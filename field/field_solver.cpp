@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <numbers>
 #include <numeric>
 
@@ -20,9 +18,11 @@ typedef float Lanes __attribute__((vector_size(4 * kLanes)));
 using Sums = std::array<double, kLanes>;
 
 constexpr std::size_t kBlock = 512;  // elements that are worth a task, and whose sums are rounded together
-constexpr std::size_t kHistory = 3;  // of Anderson's acceleration
-static const float LIM = std::getenv("LIM") ? static_cast<float>(std::atof(std::getenv("LIM"))) : .0625f;
+constexpr std::size_t kHistory = 6;  // of Anderson's acceleration
 constexpr double kPi = std::numbers::pi;
+// What lines return anyway is taken back up to this share: of elements that few lines cross nearly all light goes on by
+// the line that it came by, and a matrix without that would hold light longer than there is any.
+constexpr float kMostReturn = 1.f / 16.f;
 
 // Calls work(block, begin, end) for blocks of `count` elements, in parallel.
 template <typename Work>
@@ -57,8 +57,8 @@ struct Returning {
     const LineExchange& exchange = geometry.exchange;
     overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-    { back[i] = geometry.near_return[geometry.kinds[i]] - std::min(LIM, 1.f / static_cast<float>(std::max(exchange.lines[i], 1u)));
-        static const bool plain = std::getenv("PLAIN"); if (plain) back[i] = 0.f; }
+    back[i] = geometry.near_return[geometry.kinds[i]] -
+                  std::min(kMostReturn, 1.f / static_cast<float>(std::max(exchange.lines[i], 1u)));
     });
     overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
@@ -594,8 +594,10 @@ double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo) {
     std::swap(before, from);
     std::swap(from, to);
   }
-  std::fprintf(stderr, "recollision %.4f + %.4f steps %zu near %.4f\n", largest.value, norm * largest.last, diagonal.size(), double{geometry.near_return[0]});
-  return std::min(double{std::max(albedo.ground, *std::max_element(albedo.of_kinds.begin(), albedo.of_kinds.end()))}, largest.value + norm * largest.last);
+  // What is not absorbed is no more than the albedo.
+  const float most = std::max(periodic ? albedo.ground : 0.f,
+                              *std::max_element(albedo.of_kinds.begin(), albedo.of_kinds.end()));
+  return std::min(double{most}, largest.value + norm * largest.last);
 }
 
 // (F4)
