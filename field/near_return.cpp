@@ -32,7 +32,7 @@ struct View {
 // Of pairs of lines from one side, how often both meet the same leaf: over all pairs, and by a straight line over the
 // distance of near ones.
 struct Pairs {
-  double all = 0., all_same = 0.;
+  double all = 0., all_same = 0., meet = 0.;
   double near = 0., near_same = 0., distance = 0., squares = 0., same_distance = 0.;
 
   void add(const View& view, float per_metre) {
@@ -41,6 +41,7 @@ struct Pairs {
         const double d = double{per_metre * glm::distance(view.lines[a].place, view.lines[b].place)};
         const bool same = view.lines[a].leaf == view.lines[b].leaf && view.lines[a].leaf != kOutside;
         all += 1.;
+        meet += 0.5 * ((view.lines[a].leaf != kOutside) + (view.lines[b].leaf != kOutside));
         all_same += same;
         if (d > double{kNear}) continue;
         near += 1.;
@@ -55,7 +56,7 @@ struct Pairs {
     const double spread = near * squares - distance * distance;
     if (!(spread > 1e-6 * near * squares)) return 0.;
     const double from_one_place = (near_same * squares - distance * same_distance) / spread;
-    return std::clamp(from_one_place - all_same / all, 0., 1.);
+    return std::clamp((from_one_place * all - all_same) / std::max(meet, 1.), 0., 1.);
   }
 };
 
