@@ -271,6 +271,8 @@ class Solve {
       if (kept == kHistory) {
         std::rotate(change_steps_.begin(), change_steps_.begin() + 1, change_steps_.end());
         std::rotate(passed_steps_.begin(), passed_steps_.begin() + 1, passed_steps_.end());
+        for (std::size_t j = 1; j < kHistory; ++j)
+          for (std::size_t l = 1; l <= j; ++l) with_steps_[j - 1][l - 1] = with_steps_[j][l];
         --kept;
       }
       change_steps_[kept].resize(sides);
@@ -278,8 +280,8 @@ class Solve {
       ++kept;
     }
     struct Found {
-      std::array<Sums, kHistory> with_change{};                       // <step_j, change>
-      std::array<std::array<Sums, kHistory>, kHistory> with_steps{};  // <step_j, step_l>
+      std::array<Sums, kHistory> with_change{};  // <step_j, change>
+      std::array<Sums, kHistory> with_newest{};  // <step_j, newest step>
       Sums squares{}, light_squares{}, down{};
     };
     std::vector<Found> found((count() + kBlock - 1) / kBlock);
@@ -295,10 +297,11 @@ class Solve {
       addTo(of_block.squares, weight * change * change);
       const Lanes light = side < ground() ? passed + direct_[side] : passed;
       addTo(of_block.light_squares, weight * light * light);
+      if (kept == 0) return;
+      const Lanes weighted_change = weight * change, weighted_newest = weight * change_steps_[kept - 1][side];
       for (std::size_t j = 0; j < kept; ++j) {
-        const Lanes weighted = weight * change_steps_[j][side];
-        addTo(of_block.with_change[j], weighted * change);
-        for (std::size_t l = 0; l <= j; ++l) addTo(of_block.with_steps[j][l], weighted * change_steps_[l][side]);
+        addTo(of_block.with_change[j], weighted_change * change_steps_[j][side]);
+        addTo(of_block.with_newest[j], weighted_newest * change_steps_[j][side]);
       }
     };
     overBlocks(count(), [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -331,7 +334,7 @@ class Solve {
       sum(total.down, part.down);
       for (std::size_t j = 0; j < kHistory; ++j) {
         sum(total.with_change[j], part.with_change[j]);
-        for (std::size_t l = 0; l <= j; ++l) sum(total.with_steps[j][l], part.with_steps[j][l]);
+        sum(total.with_newest[j], part.with_newest[j]);
       }
     };
     for (const Found& part : found) addFound(part);
@@ -343,7 +346,7 @@ class Solve {
     take(ground(), source_[ground()] + down, of_ground);
     addFound(of_ground);
     with_change_ = total.with_change;
-    with_steps_ = total.with_steps;
+    if (kept > 0) with_steps_[kept - 1] = total.with_newest;
     squares_ = total.squares;
     light_squares_ = total.light_squares;
   }
@@ -469,7 +472,7 @@ class Solve {
   std::vector<Lanes> source_, direct_, light_, passed_, change_, radiance_;
   std::array<std::vector<Lanes>, kHistory> change_steps_, passed_steps_;
   std::array<Sums, kHistory> with_change_{};
-  std::array<std::array<Sums, kHistory>, kHistory> with_steps_{};
+  std::array<std::array<Sums, kHistory>, kHistory> with_steps_{};  // <step_j, step_l> at [j][l], l <= j
   Sums squares_{}, light_squares_{};
   std::array<FieldBalance, kLanes> balance_{};
   int iterations_ = 0;

@@ -49,7 +49,7 @@ struct FieldSolution {
 };
 
 struct SolverEffort {
-  double error = 1e-3;  // bound on the relative RMS error of all sides' light at which iteration ends [1]
+  double error = 2e-3;  // bound on the relative RMS error of all sides' light at which iteration ends [1]
   int most_iterations = 200;
 };
 
