@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "field/clumping.hpp"
 #include "field/grid_field.hpp"
