@@ -315,8 +315,7 @@ std::vector<Row> judgeCells(const Case& of, const FieldEffort& effort, int cells
   GridField field(of.stand.period ? cellMedium({&tree, 1}, {.cells = cells}, of.stand.period) : alone,
                   std::array{omega});
   const double made = making.seconds();
-  const DirectLight direct = directLight(SunPicture(*of.mesh, elements, of.stand.period, of.sun, effort.direct), elements,
-                                        of.stand.period.has_value());
+  const DirectLight direct = directLight(*of.mesh, elements, of.stand.period, of.sun, effort.direct);
   const auto ofLeaves = [&](const std::vector<float>& sides) {
     std::vector<float> sums(elements.size());
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = sides[2 * i] + sides[2 * i + 1];

@@ -7,33 +7,14 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/finished_mesh.hpp"
 #include "core/require.hpp"
 
 namespace sunfleck {
 namespace {
 
-constexpr float kLargestCoordinate = 1e4f;  // [m]; there a float still resolves a millimetre
-
-void checkVertices(const TreeMesh& mesh, const std::string& source) {
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) {
-      const float value = mesh.vertices[i][axis];
-      if (!(std::abs(value) <= kLargestCoordinate))
-        require(false, source + ": vertex " + std::to_string(i + 1) + " " + "xyz"[axis], value,
-                "a finite number of metres, at most 1e4 in size");
-    }
-}
-
-void checkIndices(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles, const std::string& what) {
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (int corner = 0; corner < 3; ++corner)
-      if (triangles[i][corner] >= mesh.vertices.size())
-        require(false, what + " triangle " + std::to_string(i + 1) + " vertex index", triangles[i][corner],
-                "below the number of vertices, " + std::to_string(mesh.vertices.size()));
-}
-
 std::size_t dropFlat(const TreeMesh& mesh, std::vector<glm::uvec3>& triangles) {
-  return std::erase_if(triangles, [&](const glm::uvec3& t) { return !(triangleArea(mesh, t) > 0.); });
+  return std::erase_if(triangles, [&](const glm::uvec3& t) { return !hasArea(triangleArea(mesh, t)); });
 }
 
 void checkCuts(const TreeMesh& mesh, const std::string& source) {
@@ -53,7 +34,7 @@ void checkCuts(const TreeMesh& mesh, const std::string& source) {
 std::size_t dropCutFlat(TreeMesh& mesh, const std::vector<double>& shares) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i) {
-    if (!(triangleArea(mesh, mesh.leaf_triangles[i]) * shares[i] > 0.)) continue;
+    if (!hasArea(triangleArea(mesh, mesh.leaf_triangles[i]) * shares[i])) continue;
     mesh.leaf_triangles[kept] = mesh.leaf_triangles[i];
     mesh.leaf_cuts[kept++] = mesh.leaf_cuts[i];
   }
@@ -112,9 +93,9 @@ Bounds boundsOf(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles) 
 }  // namespace
 
 Dropped finish(TreeMesh& mesh, const std::string& source) {
-  checkVertices(mesh, source);
-  checkIndices(mesh, mesh.leaf_triangles, source + ": leaf");
-  checkIndices(mesh, mesh.wood_triangles, source + ": wood");
+  requireVertices(mesh, source);
+  requireIndices(mesh, mesh.leaf_triangles, source + ": leaf");
+  requireIndices(mesh, mesh.wood_triangles, source + ": wood");
   checkCuts(mesh, source);
   const Dropped dropped{.leaf_triangles = mesh.leaf_cuts.empty() ? dropFlat(mesh, mesh.leaf_triangles)
                                                                  : dropCutFlat(mesh, leafShares(mesh)),

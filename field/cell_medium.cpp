@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <set>
+#include <string>
 
 #include "core/available_memory.hpp"
+#include "core/finished_mesh.hpp"
 #include "core/require.hpp"
 #include "grid/triangle_clipping.hpp"
 
@@ -107,6 +110,9 @@ CellMedium cellMedium(std::span<const PlacedElements> trees, const CellRule& rul
                       const std::optional<glm::vec2>& period) {
   require(!trees.empty(), "trees of the field", trees.size(), "at least 1");
   require(rule.cells >= 1 && rule.cells <= 256, "cells of the field", rule.cells, "1 to 256 along a tree");
+  std::set<const TreeMesh*> known;
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    if (known.insert(trees[i].mesh).second) requireFinished(*trees[i].mesh, "tree " + std::to_string(i + 1));
   CellMedium medium;
   SweepGrid& grid = medium.grid;
   placeCells(grid, trees, rule, period);

@@ -45,7 +45,8 @@ struct CellMedium {
 };
 
 //   period  of the trees, where they repeat
-// Throws InvalidInput on no tree, cells out of their range, and on more cells or pieces than memory has room for.
+// Throws InvalidInput on no tree, as requireFinished does, on cells out of their range, and on more cells or pieces
+// than memory has room for.
 CellMedium cellMedium(std::span<const PlacedElements> trees, const CellRule& rule = {},
                       const std::optional<glm::vec2>& period = std::nullopt);
 

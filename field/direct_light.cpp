@@ -37,4 +37,9 @@ DirectLight directLight(const SunPicture& picture, const FieldElements& elements
   return light;
 }
 
+DirectLight directLight(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
+                        Direction along, const DirectEffort& effort) {
+  return directLight(SunPicture(mesh, elements, period, along, effort), elements, period.has_value());
+}
+
 }  // namespace sunfleck

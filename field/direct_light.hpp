@@ -1,5 +1,7 @@
 #pragma once
 
+#include <glm/vec2.hpp>
+#include <optional>
 #include <vector>
 
 #include "field/sun_picture.hpp"
@@ -16,5 +18,8 @@ struct DirectLight {
 };
 
 DirectLight directLight(const SunPicture& picture, const FieldElements& elements, bool periodic);
+// The same, by a picture that is not kept.
+DirectLight directLight(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
+                        Direction along, const DirectEffort& effort = {});
 
 }  // namespace sunfleck

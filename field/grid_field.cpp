@@ -73,14 +73,16 @@ class ErrorBound {
         kept += weight * std::abs(double{g[i]} - double{last_g_[i]});
       }
     }
-    // Steps are mostly along what is slowest to leave, but not wholly: half of the share that leaves is trusted.
-    if (moved > 0.) staying_ = std::max(staying_, kept / moved);
-    const double stays = last_x_.empty() ? albedo_ : std::min(albedo_, 0.5 * (1. + staying_));
+    // Steps are mostly along what is slowest to leave, but not wholly: half of the share that leaves is trusted. One
+    // that seems to make light tells nothing: it has brought light from walls, which are weighed only roughly, to
+    // leaves.
+    if (kept < moved) staying_ = std::max(staying_, kept / moved);
+    const double stays = staying_ > 0. ? std::min(albedo_, 0.5 * (1. + staying_)) : albedo_;
     last_x_ = x;
     last_g_ = g;
-    if (!(total > 0.)) return 0.;
-    return stays < 1. ? (stays * change + wall_change) / ((1. - stays) * total)
-                      : std::numeric_limits<double>::infinity();
+    if (total == 0. && change == 0.) return 0.;
+    return stays < 1. && total > 0. ? (stays * change + wall_change) / ((1. - stays) * total)
+                                    : std::numeric_limits<double>::infinity();
   }
 
  private:
@@ -397,6 +399,7 @@ GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) 
     for (std::size_t band = 0; band < bands; ++band) {
       settleCells(light, band, values[band], found[band]);
       mixers[band].next(values[band], found[band]);
+      for (float& value : values[band]) value = std::max(value, 0.f);  // no mixture of light is darker than none
       scatter(band, values[band]);
     }
   }

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/finished_mesh.hpp"
 #include "core/require.hpp"
 #include "field/near_return.hpp"
 #include "sky/sky_shares.hpp"
@@ -28,10 +29,12 @@ void requireStand(std::span<const std::shared_ptr<const TreeMesh>> kinds, const 
       require(std::abs(tree.position[axis]) <= 1e6f, name + " position", tree.position[axis],
               "finite and at most 1e6 m in size");
     require(std::isfinite(tree.rotation), name + " rotation", tree.rotation, "finite");
-    require(kinds[tree.kind]->leaf_count > 0, name + " number of leaves", kinds[tree.kind]->leaf_count, "at least 1");
     require(kinds[tree.kind]->leaf_cuts.empty(), name + " leaf masks", kinds[tree.kind]->masks.size(),
             "0: the field would take the whole triangles");
   }
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+    if (std::ranges::count(stand.trees, kind, &Placement::kind) > 0)
+      requireFinished(*kinds[kind], "kind " + std::to_string(kind + 1) + " of trees");
   if (stand.period)
     for (int axis = 0; axis < 2; ++axis)
       require((*stand.period)[axis] > 0.f && (*stand.period)[axis] <= 1e6f, "period", (*stand.period)[axis],

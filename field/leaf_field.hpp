@@ -76,8 +76,8 @@ class LeafField {
 
   explicit LeafField(const FieldEffort& effort = {});
 
-  // What stands: of each kind its mesh, and where its trees are. Throws InvalidInput on a mesh without leaves or with
-  // leaves that masks cut out, a tree of no kind, and a place or period that is not finite.
+  // What stands: of each kind its mesh, and where its trees are. Throws InvalidInput as requireFinished does on meshes
+  // of trees that stand, on leaves that masks cut out, a tree of no kind, and a place or period that is not finite.
   void setStand(std::span<const std::shared_ptr<const TreeMesh>> kinds, const Stand& stand);
 
   // Throws InvalidInput on a value out of its range, where the memory that it takes is more than there is, and where

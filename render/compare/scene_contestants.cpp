@@ -118,7 +118,7 @@ class GridContestant final : public SceneContestant {
   std::vector<float> answer() {
     constexpr std::array kDark{0.f};
     const GridSolution solution = field_->solve({.optics = {{optics_}},
-                                                 .direct = directLight(SunPicture(*mesh_, elements_, period_, light_), elements_, period_.has_value()).irradiance,
+                                                 .direct = directLight(*mesh_, elements_, period_, light_).irradiance,
                                                  .entering = field_->evenSky(kDark, kDark, {})});
     std::vector<float> of_elements(elements_.size());
     for (std::size_t i = 0; i < of_elements.size(); ++i)
