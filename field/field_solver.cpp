@@ -53,7 +53,7 @@ class Solve {
     makeSource();
   }
 
-  std::vector<FieldSolution> run() {
+  std::vector<FieldSolution> run(const Progress& progress) {
     light_ = source_;
     std::size_t kept = 0;  // differences of the history
     int iteration = 0;
@@ -61,6 +61,7 @@ class Solve {
       step(kept, iteration > 0);
       if (iteration > 0 && kept < kHistory) ++kept;
       if (done() || iteration + 1 >= effort_.most_iterations) break;
+      requireGoOn(progress, share());
       advance(kept);
     }
     iterations_ = iteration + 1;
@@ -254,6 +255,15 @@ class Solve {
     return true;
   }
 
+  // Of the way to the error asked for, as bounds fall by about the same factor each time.
+  double share() {
+    double largest = 0.;
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) largest = std::max(largest, bound(lane));
+    if (!(largest > effort_.error)) return 1.;
+    first_bound_ = std::max(first_bound_, largest);
+    return std::log(first_bound_ / largest) / std::log(first_bound_ / effort_.error);
+  }
+
   // Coefficients of the history that leave the least change, of one problem: the normal equations by Cholesky, as far
   // as the differences are independent.
   std::array<double, kHistory> mixing(std::size_t lane, std::size_t kept) const {
@@ -361,6 +371,7 @@ class Solve {
   Sums squares_{}, light_squares_{};
   std::array<FieldBalance, kLanes> balance_{};
   int iterations_ = 0;
+  double first_bound_ = 0.;
 };
 
 // Largest eigenvalue of a symmetric tridiagonal matrix, by Sturm's sequence (Golub & Van Loan), and how much of its
@@ -411,7 +422,7 @@ FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems) {
 
 // (F5)
 double recollision(const LineExchange& exchange, std::span<const std::uint32_t> kinds, const FieldAlbedo& albedo,
-                   bool periodic) {
+                   bool periodic, const Progress& progress) {
   constexpr int kMostSteps = 12;
   const std::size_t elements = kinds.size(), ground = 2 * elements;
   // Lanczos's method on the symmetric matrix D K D, where D^2 is the albedo and K is made symmetric by the square roots
@@ -441,6 +452,7 @@ double recollision(const LineExchange& exchange, std::span<const std::uint32_t> 
   std::vector<double> diagonal, beside;
   Largest largest{0., 1.};
   for (int step = 0; step < kMostSteps; ++step) {
+    requireGoOn(progress, 0.);
     for (std::size_t side = 0; side <= ground; ++side) sent[side] = scale[side] * from[side];
     std::vector<double> down(blocks);
     overBlocks(elements, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -475,7 +487,8 @@ double recollision(const LineExchange& exchange, std::span<const std::uint32_t> 
 // (F4)
 std::vector<FieldSolution> solveField(const FieldElements& elements, const LineExchange& exchange,
                                       std::span<const std::uint32_t> kinds, std::span<const FieldProblem> problems,
-                                      bool periodic, double recollision, const SolverEffort& effort) {
+                                      bool periodic, double recollision, const SolverEffort& effort,
+                                      const Progress& progress) {
   if (!(recollision < 1. - 1e-6))
     throw InvalidInput(
         "leaf albedo = 1: must be below 1 where light can neither leave nor be absorbed: there is no steady state");
@@ -483,7 +496,11 @@ std::vector<FieldSolution> solveField(const FieldElements& elements, const LineE
   for (std::size_t first = 0; first < problems.size(); first += kLanes) {
     Solve solve(elements, exchange, kinds, problems.subspan(first, std::min(kLanes, problems.size() - first)), periodic,
                 recollision, effort);
-    for (FieldSolution& solution : solve.run()) solutions.push_back(std::move(solution));
+    const auto share = [&](std::size_t problem) {
+      return static_cast<double>(problem) / static_cast<double>(problems.size());
+    };
+    const Progress part = partOf(progress, share(first), share(std::min(first + kLanes, problems.size())));
+    for (FieldSolution& solution : solve.run(part)) solutions.push_back(std::move(solution));
   }
   return solutions;
 }

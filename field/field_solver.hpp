@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/leaf_optics.hpp"
+#include "core/progress.hpp"
 #include "field/elements.hpp"
 #include "field/line_exchange.hpp"
 
@@ -60,9 +61,10 @@ struct FieldAlbedo {
 };
 
 // (F5) The share of the light that stays in the stand from one scattering to the next, where it is spread as it stays
-// longest: the largest eigenvalue of exchange and albedo together [1], 0 .. 1.
+// longest: the largest eigenvalue of exchange and albedo together [1], 0 .. 1. Throws std::runtime_error("interrupted")
+// when `progress`, asked before each step, ends it.
 double recollision(const LineExchange& exchange, std::span<const std::uint32_t> kinds, const FieldAlbedo& albedo,
-                   bool periodic);
+                   bool periodic, const Progress& progress = {});
 
 FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems);
 
@@ -70,9 +72,11 @@ FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems);
 // (Anderson 1965; Walker & Ni 2011). The result is the same to the bit for any number of threads.
 //   kinds        of each element: which of each problem's optics are its
 //   recollision  of the problems' largestAlbedo()
-// Throws InvalidInput where light that comes in can neither leave nor be absorbed: there is no steady state.
+// Throws InvalidInput where light that comes in can neither leave nor be absorbed: there is no steady state; and
+// std::runtime_error("interrupted") when `progress`, told after each iteration, ends it.
 std::vector<FieldSolution> solveField(const FieldElements& elements, const LineExchange& exchange,
                                       std::span<const std::uint32_t> kinds, std::span<const FieldProblem> problems,
-                                      bool periodic, double recollision, const SolverEffort& effort = {});
+                                      bool periodic, double recollision, const SolverEffort& effort = {},
+                                      const Progress& progress = {});
 
 }  // namespace sunfleck

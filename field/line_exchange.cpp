@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <mutex>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 #include "core/available_memory.hpp"
@@ -93,6 +95,26 @@ double totalArea(const FieldElements& elements) {
   return std::accumulate(elements.area.begin(), elements.area.end(), 0.);
 }
 
+// Tells of axes that threads are done with, one thread at a time.
+class AxesDone {
+ public:
+  AxesDone(const Progress& progress, std::size_t all) : progress_(progress), all_(static_cast<double>(all)) {}
+  bool oneMore() {  // whether to go on
+    const std::lock_guard lock(mutex_);
+    goes_on_ = goes_on_ && goOn(progress_, ++done_ / all_);
+    return goes_on_;
+  }
+  void requireGoOn() const {
+    if (!goes_on_) throw std::runtime_error("interrupted");
+  }
+
+ private:
+  const Progress& progress_;
+  double all_, done_ = 0.;
+  bool goes_on_ = true;
+  std::mutex mutex_;
+};
+
 // A chunk's share of the links of each side, met and outside; then where its next link goes.
 struct ChunkLinks {
   std::vector<std::uint32_t> met, outside;
@@ -126,7 +148,7 @@ std::size_t LineExchange::memoryBytes() const {
 
 // (F2)
 LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
-                          const ExchangeEffort& effort) {
+                          const ExchangeEffort& effort, const Progress& progress) {
   require(elements.leaf_elements > 0, "number of leaves", elements.leaf_elements, "at least 1");
   require(effort.axes >= 1 && effort.axes <= 16'384, "axes of the exchange", effort.axes, "1 .. 16384");
   require(effort.crossings > 0.f && effort.crossings <= 1e4f, "crossings of the exchange", effort.crossings,
@@ -155,6 +177,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   const auto axesOfChunk = [&](std::size_t chunk) {
     return std::pair(chunk * axes / kChunks, (chunk + 1) * axes / kChunks);
   };
+  AxesDone axes_done(progress, 2 * axes);
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
     Work work;
     ChunkLinks& links = chunks[chunk];
@@ -169,8 +192,10 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
       forLinks(
           found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t) { ++links.met[side]; },
           [&](std::uint32_t side, std::uint16_t) { ++links.outside[side]; });
+      if (!axes_done.oneMore()) return;
     }
   });
+  axes_done.requireGoOn();
 
   const auto starts = [&](std::vector<std::uint64_t>& first, std::vector<std::uint32_t> ChunkLinks::*counts) {
     first.resize(sides + 1);
@@ -189,7 +214,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
     ChunkLinks& links = chunks[chunk];
     const auto [begin, end] = axesOfChunk(chunk);
-    for (std::size_t axis = begin; axis < end; ++axis)
+    for (std::size_t axis = begin; axis < end; ++axis) {
       forLinks(
           found[axis], axis, axes,
           [&](std::uint32_t side, std::uint32_t source) {
@@ -198,7 +223,10 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
           [&](std::uint32_t side, std::uint16_t direction) {
             exchange.outside[exchange.first_outside[side] + links.outside[side]++] = direction;
           });
+      if (!axes_done.oneMore()) return;
+    }
   });
+  axes_done.requireGoOn();
   exchange.lines.resize(elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i)
     exchange.lines[i] = static_cast<std::uint32_t>(exchange.first[2 * i + 1] - exchange.first[2 * i] +

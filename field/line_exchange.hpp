@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/directions.hpp"
+#include "core/progress.hpp"
 #include "core/tree_mesh.hpp"
 #include "field/elements.hpp"
 
@@ -44,8 +45,9 @@ struct LineExchange {
 };
 
 //   period  side lengths of the repeated rectangle [m]; none: the stand is alone
-// Throws InvalidInput where the memory that it takes is more than there is.
+// Throws InvalidInput where the memory that it takes is more than there is, and std::runtime_error("interrupted") when
+// `progress`, told after each axis, ends it.
 LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
-                          const ExchangeEffort& effort = {});
+                          const ExchangeEffort& effort = {}, const Progress& progress = {});
 
 }  // namespace sunfleck
