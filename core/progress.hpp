@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 
 namespace sunfleck {
 
@@ -10,6 +11,17 @@ using Progress = std::function<bool(double done)>;
 
 inline bool goOn(const Progress& progress, double done) {
   return !progress || progress(done);
+}
+// The same for work that is of no use before its end: throws std::runtime_error("interrupted") where it is not to go
+// on.
+inline void requireGoOn(const Progress& progress, double done) {
+  if (!goOn(progress, done)) throw std::runtime_error("interrupted");
+}
+
+// The progress of a part of some work, which is from `from` to `to` of it. `whole` must outlive it.
+inline Progress partOf(const Progress& whole, double from, double to) {
+  if (!whole) return {};
+  return [&whole, from, to](double done) { return whole(from + done * (to - from)); };
 }
 
 }  // namespace sunfleck

@@ -49,15 +49,15 @@ struct KindOptics {
 // what it reflects returns along that line, more than of what comes along others. Solving that for the two ends of a
 // line gives (F7): each sends A + e B, where B is what the other sends by itself and e = back reflectance.
 struct Returning {
-  std::vector<float> back;           // of each element: near return, less what its lines return anyway
-  std::vector<Lanes> own, gain;      // of each side: how much comes back of what it sends, and of all the rest
+  std::vector<float> back;       // of each element: near return, less what its lines return anyway
+  std::vector<Lanes> own, gain;  // of each side: how much comes back of what it sends, and of all the rest
 
   Returning(const FieldGeometry& geometry, std::span<const KindOptics> optics)
       : back(geometry.elements.size()), own(2 * back.size()), gain(2 * back.size()) {
     const LineExchange& exchange = geometry.exchange;
     overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-    back[i] = geometry.near_return[geometry.kinds[i]] -
+        back[i] = geometry.near_return[geometry.kinds[i]] -
                   std::min(kMostReturn, 1.f / static_cast<float>(std::max(exchange.lines[i], 1u)));
     });
     overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -67,7 +67,8 @@ struct Returning {
           const std::size_t other = exchange.sees[link] / 2;
           sum += back[other] * optics[geometry.kinds[other]].reflectance;
         }
-        const auto met = static_cast<float>(std::max<std::uint64_t>(exchange.first[side + 1] - exchange.first[side], 1));
+        const auto met =
+            static_cast<float>(std::max<std::uint64_t>(exchange.first[side + 1] - exchange.first[side], 1));
         const Lanes here = back[side / 2] * optics[geometry.kinds[side / 2]].reflectance;
         gain[side] = 1.f / (1.f - here * sum / met);
         own[side] = gain[side] * sum;
@@ -98,7 +99,7 @@ class Solve {
     makeSource();
   }
 
-  std::vector<FieldSolution> run() {
+  std::vector<FieldSolution> run(const Progress& progress) {
     light_ = source_;
     std::size_t kept = 0;  // differences of the history
     int iteration = 0;
@@ -106,6 +107,7 @@ class Solve {
       step(kept, iteration > 0);
       if (iteration > 0 && kept < kHistory) ++kept;
       if (done() || iteration + 1 >= effort_.most_iterations) break;
+      requireGoOn(progress, share());
       advance(kept);
     }
     iterations_ = iteration + 1;
@@ -188,8 +190,7 @@ class Solve {
         Lanes sum{};
         for (std::uint64_t i = exchange_.first[side]; i < exchange_.first[side + 1]; ++i)
           sum += sent(exchange_.sees[i], lit ? lit->seen[i] : LitPlaces::kDark);
-        source_[side] +=
-            scale * perLine(side) * (returning_.gain[side] * sum + returning_.own[side] * mean(side));
+        source_[side] += scale * perLine(side) * (returning_.gain[side] * sum + returning_.own[side] * mean(side));
         for (std::uint64_t i = exchange_.first_outside[side]; i < exchange_.first_outside[side + 1]; ++i)
           addTo((exchange_.directions[exchange_.outside[i]].z > 0.f ? down : up)[block],
                 scale * sent(side, lit ? lit->open[i] : LitPlaces::kDark));
@@ -255,9 +256,7 @@ class Solve {
     ground_radiance_ = over_pi * (ground_albedo_ * light_[ground()]);
   }
   // The share of radiance that comes from outside along a line that a side sends back along it.
-  Lanes returned(std::size_t side) const {
-    return returning_.back[side / 2] * optics_[kinds_[side / 2]].reflectance;
-  }
+  Lanes returned(std::size_t side) const { return returning_.back[side / 2] * optics_[kinds_[side / 2]].reflectance; }
 
   // (F4) The light after one more passage, its difference from the light before it, and the sums that Anderson's
   // acceleration needs of it.
@@ -362,6 +361,15 @@ class Solve {
     return true;
   }
 
+  // Of the way to the error asked for, as bounds fall by about the same factor each time.
+  double share() {
+    double largest = 0.;
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) largest = std::max(largest, bound(lane));
+    if (!(largest > effort_.error)) return 1.;
+    first_bound_ = std::max(first_bound_, largest);
+    return std::log(first_bound_ / largest) / std::log(first_bound_ / effort_.error);
+  }
+
   // Coefficients of the history that leave the least change, of one problem: the normal equations by Cholesky, as far
   // as the differences are independent.
   std::array<double, kHistory> mixing(std::size_t lane, std::size_t kept) const {
@@ -436,7 +444,8 @@ class Solve {
             from_above += double{problem.outside[exchange_.outside[i]]};
         const auto back = double{returned(side)[lane]};
         below += double{radiance_[side][lane]} * exchange_.below[side] + back * from_below;
-        above += double{radiance_[side][lane]} * static_cast<double>(outside - exchange_.below[side]) + back * from_above;
+        above +=
+            double{radiance_[side][lane]} * static_cast<double>(outside - exchange_.below[side]) + back * from_above;
       }
       balance.out_up += exchange_.line_power * above;
       if (periodic_) {
@@ -476,6 +485,7 @@ class Solve {
   Sums squares_{}, light_squares_{};
   std::array<FieldBalance, kLanes> balance_{};
   int iterations_ = 0;
+  double first_bound_ = 0.;
 };
 
 // Largest eigenvalue of a symmetric tridiagonal matrix, by Sturm's sequence (Golub & Van Loan), and how much of its
@@ -528,7 +538,7 @@ FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems) {
 }
 
 // (F5)
-double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo) {
+double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo, const Progress& progress) {
   constexpr int kMostSteps = 12;
   const LineExchange& exchange = geometry.exchange;
   const std::span<const std::uint32_t> kinds = geometry.kinds;
@@ -569,6 +579,7 @@ double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo) {
   std::vector<double> diagonal, beside;
   Largest largest{0., 1.};
   for (int step = 0; step < kMostSteps; ++step) {
+    requireGoOn(progress, 0.);
     for (std::size_t side = 0; side <= ground; ++side) sent[side] = scale[side] * from[side];
     std::vector<double> down(blocks);
     overBlocks(elements, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -598,21 +609,25 @@ double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo) {
     std::swap(from, to);
   }
   // What is not absorbed is no more than the albedo.
-  const float most = std::max(periodic ? albedo.ground : 0.f,
-                              *std::max_element(albedo.of_kinds.begin(), albedo.of_kinds.end()));
+  const float most =
+      std::max(periodic ? albedo.ground : 0.f, *std::max_element(albedo.of_kinds.begin(), albedo.of_kinds.end()));
   return std::min(double{most}, largest.value + norm * largest.last);
 }
 
 // (F4)
 std::vector<FieldSolution> solveField(const FieldGeometry& geometry, std::span<const FieldProblem> problems,
-                                      double recollision, const SolverEffort& effort) {
+                                      double recollision, const SolverEffort& effort, const Progress& progress) {
   if (!(recollision < 1. - 1e-6))
     throw InvalidInput(
         "leaf albedo = 1: must be below 1 where light can neither leave nor be absorbed: there is no steady state");
   std::vector<FieldSolution> solutions;
   for (std::size_t first = 0; first < problems.size(); first += kLanes) {
     Solve solve(geometry, problems.subspan(first, std::min(kLanes, problems.size() - first)), recollision, effort);
-    for (FieldSolution& solution : solve.run()) solutions.push_back(std::move(solution));
+    const auto share = [&](std::size_t problem) {
+      return static_cast<double>(problem) / static_cast<double>(problems.size());
+    };
+    const Progress part = partOf(progress, share(first), share(std::min(first + kLanes, problems.size())));
+    for (FieldSolution& solution : solve.run(part)) solutions.push_back(std::move(solution));
   }
   return solutions;
 }

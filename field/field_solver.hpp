@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/leaf_optics.hpp"
+#include "core/progress.hpp"
 #include "field/elements.hpp"
 #include "field/line_exchange.hpp"
 #include "field/lit_places.hpp"
@@ -20,8 +21,8 @@ struct ElementOptics {
 
 // One case to solve: light of one band and from one source, and what it meets.
 struct FieldProblem {
-  const DirectLight* direct = nullptr;  // of a sun; none: dark
-  const LitPlaces* lit = nullptr;       // and where it falls; none: evenly on each side
+  const DirectLight* direct = nullptr;    // of a sun; none: dark
+  const LitPlaces* lit = nullptr;         // and where it falls; none: evenly on each side
   std::span<const float> outside{};       // radiance of the sky in which light travels in each of the exchange's
                                           // directions [1/sr]; 0 for those that rise; empty: none
   std::span<const ElementOptics> optics;  // of each kind
@@ -57,7 +58,7 @@ struct SolverEffort {
 struct FieldAlbedo {
   std::vector<float> of_kinds;     // of each kind of element [1], 0 .. 1
   std::vector<float> reflectance;  // its share that is reflected
-  float ground = 0.f;           // with a period [1], 0 .. 1
+  float ground = 0.f;              // with a period [1], 0 .. 1
   bool operator==(const FieldAlbedo&) const = default;
 };
 
@@ -71,16 +72,19 @@ struct FieldGeometry {
 };
 
 // (F5) The share of the light that stays in the stand from one scattering to the next, where it is spread as it stays
-// longest: the largest eigenvalue of exchange and albedo together [1], 0 .. 1.
-double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo);
+// longest: the largest eigenvalue of exchange and albedo together [1], 0 .. 1. Throws std::runtime_error("interrupted")
+// when `progress`, asked before each step, ends it.
+double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo, const Progress& progress = {});
 
 FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems);
 
 // (F4) Solves some problems at once, by Anderson's acceleration of the passage of light from element to element
 // (Anderson 1965; Walker & Ni 2011). The result is the same to the bit for any number of threads.
 //   recollision  of the problems' largestAlbedo()
-// Throws InvalidInput where light that comes in can neither leave nor be absorbed: there is no steady state.
+// Throws InvalidInput where light that comes in can neither leave nor be absorbed: there is no steady state; and
+// std::runtime_error("interrupted") when `progress`, told after each iteration, ends it.
 std::vector<FieldSolution> solveField(const FieldGeometry& geometry, std::span<const FieldProblem> problems,
-                                      double recollision, const SolverEffort& effort = {});
+                                      double recollision, const SolverEffort& effort = {},
+                                      const Progress& progress = {});
 
 }  // namespace sunfleck

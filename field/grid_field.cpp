@@ -324,7 +324,7 @@ void GridField::settleCells(const GridLight& light, std::size_t band, std::span<
 }
 
 // (F17)
-GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) {
+GridSolution GridField::solve(const GridLight& light, const GridEffort& effort, const Progress& progress) {
   validate(light);
   const std::size_t bands = light.bands(), elements = medium_.area.size(), sides = 2 * elements;
   Sweep sweep(medium_.grid, ordinates_, bands);
@@ -377,6 +377,7 @@ GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) 
     bounds.emplace_back(weights, sides, most);
   }
   GridSolution solution;
+  double first_bound = 0.;
   for (;;) {
     std::vector<std::vector<float>> values, found;
     for (std::size_t band = 0; band < bands; ++band) values.push_back(gather(band));
@@ -396,6 +397,11 @@ GridSolution GridField::solve(const GridLight& light, const GridEffort& effort) 
                                   solution.iterations, solution.error_bound);
       break;
     }
+    // Bounds fall by about the same factor each time.
+    if (solution.iterations == 1 || !std::isfinite(first_bound)) first_bound = solution.error_bound;
+    const double falls = std::log(first_bound / solution.error_bound),
+                 must_fall = std::log(first_bound / double{effort.error});
+    requireGoOn(progress, falls > 0. && falls < must_fall ? falls / must_fall : 0.);
     for (std::size_t band = 0; band < bands; ++band) {
       settleCells(light, band, values[band], found[band]);
       mixers[band].next(values[band], found[band]);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/leaf_optics.hpp"
+#include "core/progress.hpp"
 #include "field/cell_medium.hpp"
 #include "field/sphere_ordinates.hpp"
 #include "field/sweep.hpp"
@@ -76,8 +77,9 @@ class GridField {
   const SphereOrdinates& ordinates() const { return ordinates_; }
 
   // Throws InvalidInput on no band or more than kMostBands, a share out of its range, light that is not finite or
-  // negative, arrays that do not fit the medium, and on more memory than there is.
-  GridSolution solve(const GridLight& light, const GridEffort& effort = {});
+  // negative, arrays that do not fit the medium, and on more memory than there is; std::runtime_error("interrupted")
+  // when `progress`, told after each iteration, ends it.
+  GridSolution solve(const GridLight& light, const GridEffort& effort = {}, const Progress& progress = {});
 
   // (F21) Direct light by extinction in the cells: for media of turbid leaves, and for stands in which the light of
   // single leaves does not count. Throws InvalidInput on a direction that is not a unit vector that goes down.

@@ -1,15 +1,8 @@
 #include "field/leaf_field.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
-#include <numbers>
 #include <numeric>
-#include <string>
 
-#include "core/finished_mesh.hpp"
 #include "core/require.hpp"
 #include "field/near_return.hpp"
 #include "sky/sky_shares.hpp"
@@ -18,60 +11,6 @@ namespace sunfleck {
 namespace {
 
 constexpr std::array<std::size_t, 1> kOnly{0};
-
-void requireStand(std::span<const std::shared_ptr<const TreeMesh>> kinds, const Stand& stand) {
-  require(!stand.trees.empty(), "number of trees", stand.trees.size(), "at least 1");
-  for (std::size_t i = 0; i < stand.trees.size(); ++i) {
-    const Placement& tree = stand.trees[i];
-    const std::string name = "tree " + std::to_string(i + 1);
-    require(tree.kind < kinds.size(), name + " kind", tree.kind, "below the number of kinds");
-    for (int axis = 0; axis < 3; ++axis)
-      require(std::abs(tree.position[axis]) <= 1e6f, name + " position", tree.position[axis],
-              "finite and at most 1e6 m in size");
-    require(std::isfinite(tree.rotation), name + " rotation", tree.rotation, "finite");
-    require(kinds[tree.kind]->leaf_cuts.empty(), name + " leaf masks", kinds[tree.kind]->masks.size(),
-            "0: the field would take the whole triangles");
-  }
-  for (std::size_t kind = 0; kind < kinds.size(); ++kind)
-    if (std::ranges::count(stand.trees, kind, &Placement::kind) > 0)
-      requireFinished(*kinds[kind], "kind " + std::to_string(kind + 1) + " of trees");
-  if (stand.period)
-    for (int axis = 0; axis < 2; ++axis)
-      require((*stand.period)[axis] > 0.f && (*stand.period)[axis] <= 1e6f, "period", (*stand.period)[axis],
-              "above 0 and at most 1e6 m");
-}
-
-void requireShare(float value, const std::string& what) {
-  require(value >= 0.f && value <= 1.f, what, value, "0 .. 1");
-}
-
-void requireLighting(const FieldLighting& lighting, std::size_t kinds) {
-  require(lighting.suns.size() <= LeafField::kMostSuns, "number of suns", lighting.suns.size(), "at most 4");
-  require(lighting.kinds.size() == kinds, "number of kinds with optics", lighting.kinds.size(), "that of the stand");
-  for (const FieldSun& sun : lighting.suns) {
-    require(std::abs(glm::length(sun.along) - 1.f) < 1e-3f, "length of the sunlight's direction",
-            glm::length(sun.along), "1");
-    require(sun.along.z < 0.f, "z of the sunlight's direction", sun.along.z, "below 0");
-    for (int band = 0; band < kBands; ++band)
-      require(sun.irradiance[band] >= 0.f && std::isfinite(sun.irradiance[band]), "sun irradiance",
-              sun.irradiance[band], "finite and >= 0");
-  }
-  for (const FieldKind& kind : lighting.kinds)
-    for (int band = 0; band < kBands; ++band) {
-      validate(kind.leaf[static_cast<std::size_t>(band)]);
-      requireShare(kind.wood_reflectance[band], "wood reflectance");
-    }
-  for (int band = 0; band < kBands; ++band) requireShare(lighting.ground_albedo[band], "ground albedo");
-}
-
-// Its direction by the direction that a tree turns to.
-glm::vec3 turned(const glm::vec3& vector, float cosine, float sine) {
-  return {cosine * vector.x - sine * vector.y, sine * vector.x + cosine * vector.y, vector.z};
-}
-
-void append(std::vector<glm::uvec3>& to, const std::vector<glm::uvec3>& triangles, std::uint32_t first_vertex) {
-  for (const glm::uvec3& triangle : triangles) to.push_back(triangle + first_vertex);
-}
 
 }  // namespace
 
@@ -98,9 +37,19 @@ LeafField::LeafField(const FieldEffort& effort)
   graph_.resize(solution_product_, kSources);
 }
 
+bool LeafField::sameStand(std::span<const std::shared_ptr<const TreeMesh>> kinds, const Stand& stand) const {
+  return stand == stand_ && std::equal(kinds.begin(), kinds.end(), meshes_.begin(), meshes_.end());
+}
+bool LeafField::sameOptics(const FieldLighting& lighting) const {
+  return lighting.kinds == lighting_.kinds && lighting.ground_albedo == lighting_.ground_albedo;
+}
+bool LeafField::sameDirection(const FieldLighting& lighting, std::size_t sun) const {
+  return sun < lighting_.suns.size() && lighting.suns[sun].along == lighting_.suns[sun].along;
+}
+
 void LeafField::setStand(std::span<const std::shared_ptr<const TreeMesh>> kinds, const Stand& stand) {
-  requireStand(kinds, stand);
-  if (stand == stand_ && std::equal(kinds.begin(), kinds.end(), meshes_.begin(), meshes_.end())) return;
+  requireFieldStand(kinds, stand);
+  if (sameStand(kinds, stand)) return;
   meshes_.assign(kinds.begin(), kinds.end());
   stand_ = stand;
   lighting_.kinds.clear();  // what was told of others
@@ -108,98 +57,61 @@ void LeafField::setStand(std::span<const std::shared_ptr<const TreeMesh>> kinds,
 }
 
 FieldGeometry LeafField::geometry() const {
-  return {elements_, exchange_, kinds_, near_return_, stand_.period.has_value()};
+  return {elements_.elements, exchange_, elements_.kinds, near_return_, stand_.period.has_value()};
 }
 
-void LeafField::makeElements() {
-  mesh_ = {};
-  elements_ = {};
-  kinds_.clear();
-  first_leaf_.clear();
-  // Leaves of all trees come before all wood.
-  std::vector<FieldElements> of_kinds(meshes_.size());
-  std::vector<char> stands(meshes_.size());
-  for (const Placement& tree : stand_.trees) stands[tree.kind] = true;
-  tbb::parallel_for(std::size_t{0}, meshes_.size(), [&](std::size_t kind) {
-    if (stands[kind]) of_kinds[kind] = fieldElements(*meshes_[kind], effort_.elements);
-  });
-  const auto take = [&](const Placement& tree, std::size_t begin, std::size_t end, std::uint32_t kind) {
-    const FieldElements& elements = of_kinds[tree.kind];
-    const float cosine = std::cos(tree.rotation), sine = std::sin(tree.rotation);
-    for (std::size_t i = begin; i < end; ++i) {
-      elements_.area.push_back(elements.area[i]);
-      elements_.centre.push_back(tree.position + turned(elements.centre[i], cosine, sine));
-      elements_.normal.push_back(turned(elements.normal[i], cosine, sine));
-      const bool wood = elements.leaf[i] == FieldElements::kWood;
-      elements_.leaf.push_back(wood ? FieldElements::kWood : mesh_.leaf_count + elements.leaf[i]);
-      kinds_.push_back(kind);
-    }
-  };
-  std::vector<std::uint32_t> first_vertex;
-  for (const Placement& tree : stand_.trees) {
-    const TreeMesh& mesh = *meshes_[tree.kind];
-    const FieldElements& elements = of_kinds[tree.kind];
-    const float cosine = std::cos(tree.rotation), sine = std::sin(tree.rotation);
-    first_vertex.push_back(static_cast<std::uint32_t>(mesh_.vertices.size()));
-    for (const glm::vec3& vertex : mesh.vertices)
-      mesh_.vertices.push_back(tree.position + turned(vertex, cosine, sine));
-    append(mesh_.leaf_triangles, mesh.leaf_triangles, first_vertex.back());
-    const auto first = static_cast<std::uint32_t>(elements_.size());
-    for (const std::uint32_t element : elements.of_leaf_triangle) elements_.of_leaf_triangle.push_back(first + element);
-    take(tree, 0, elements.leaf_elements, 2 * tree.kind);
-    for (const std::uint32_t leaf : mesh.leaf_of_triangle) mesh_.leaf_of_triangle.push_back(mesh_.leaf_count + leaf);
-    first_leaf_.push_back(mesh_.leaf_count);
-    mesh_.leaf_count += mesh.leaf_count;
-  }
-  first_leaf_.push_back(mesh_.leaf_count);
-  elements_.leaf_elements = elements_.size();
-  for (std::size_t i = 0; i < stand_.trees.size(); ++i) {
-    const Placement& tree = stand_.trees[i];
-    const FieldElements& elements = of_kinds[tree.kind];
-    append(mesh_.wood_triangles, meshes_[tree.kind]->wood_triangles, first_vertex[i]);
-    const std::size_t first = elements_.size() - elements.leaf_elements;  // wraps below 0 and back
-    for (const std::uint32_t element : elements.of_wood_triangle)
-      elements_.of_wood_triangle.push_back(static_cast<std::uint32_t>(first + element));
-    take(tree, elements.leaf_elements, elements.size(), 2 * tree.kind + 1);
-  }
+bool LeafField::upToDate(std::span<const std::shared_ptr<const TreeMesh>> kinds, const Stand& stand,
+                         const FieldLighting& lighting) const {
+  if (!sameStand(kinds, stand) || !sameOptics(lighting)) return false;
+  for (std::size_t sun = 0; sun < lighting.suns.size(); ++sun)
+    if (!sameDirection(lighting, sun) || graph_.stale(solution_product_, sun)) return false;
+  return !lighting.sky || (lighting.sky == lighting_.sky && !graph_.stale(solution_product_, kSky));
 }
 
-const FieldResult& LeafField::solve(const FieldLighting& lighting) {
+const FieldResult& LeafField::solve(const FieldLighting& lighting, const Progress& progress) {
   require(!meshes_.empty(), "number of trees", 0, "at least 1: setStand first");
-  requireLighting(lighting, meshes_.size());
-  for (std::size_t sun = 0; sun < kMostSuns; ++sun) {
-    const bool shines = sun < lighting.suns.size(), shone = sun < lighting_.suns.size();
-    if (shines && (!shone || lighting.suns[sun].along != lighting_.suns[sun].along)) graph_.touch(direct_product_, sun);
-  }
-  if (lighting.kinds != lighting_.kinds || lighting.ground_albedo != lighting_.ground_albedo)
-    graph_.touchAll(recollision_product_);
+  requireFieldLighting(lighting, meshes_.size());
+  for (std::size_t sun = 0; sun < lighting.suns.size(); ++sun)
+    if (!sameDirection(lighting, sun)) graph_.touch(direct_product_, sun);
+  if (!sameOptics(lighting)) graph_.touchAll(recollision_product_);
   if (lighting.sky != lighting_.sky) graph_.touch(solution_product_, kSky);
   lighting_ = lighting;
 
-  graph_.bring(elements_product_, kOnly, [&](std::size_t) { makeElements(); });
+  // How far it is, by how long parts take.
+  constexpr double kExchange = 0.7, kDirect = 0.8;
+  double done = graph_.stale(exchange_product_, 0) ? 0. : kExchange;
+  requireGoOn(progress, done);
+  graph_.bring(elements_product_, kOnly, [&](std::size_t) {
+    elements_ = {};
+    elements_ = standElements(meshes_, elementsOfKinds(meshes_, stand_, effort_.elements), stand_);
+  });
   graph_.bring(exchange_product_, kOnly, [&](std::size_t) {
     exchange_ = {};  // its memory before that of the next
-    exchange_ = lineExchange(mesh_, elements_, stand_.period, effort_.exchange);
-    near_return_ = nearReturn(elements_, exchange_, kinds_, 2 * meshes_.size());
+    exchange_ = lineExchange(elements_.mesh, elements_.elements, stand_.period, effort_.exchange,
+                             partOf(progress, done, kExchange));
+    near_return_ = nearReturn(elements_.elements, exchange_, elements_.kinds, 2 * meshes_.size());
   });
   std::vector<std::size_t> suns(lighting.suns.size());
   std::iota(suns.begin(), suns.end(), std::size_t{0});
+  requireGoOn(progress, kExchange);
   graph_.bring(direct_product_, suns, [&](std::size_t sun) {
-    const SunPicture picture(mesh_, elements_, stand_.period, lighting_.suns[sun].along, effort_.direct);
-    direct_[sun] = directLight(picture, elements_, stand_.period.has_value());
+    const SunPicture picture(elements_.mesh, elements_.elements, stand_.period, lighting_.suns[sun].along,
+                             effort_.direct);
+    direct_[sun] = directLight(picture, elements_.elements, stand_.period.has_value());
     lit_[sun] = litPlaces(picture, direct_[sun], exchange_);
   });
   std::vector<std::size_t> sources = suns, stale;
   if (lighting.sky) sources.push_back(kSky);
   for (const std::size_t source : sources)
     if (graph_.stale(solution_product_, source)) stale.push_back(source);
-  if (!stale.empty()) makeSolutions(stale);
+  requireGoOn(progress, kDirect);
+  if (!stale.empty()) makeSolutions(stale, partOf(progress, kDirect, 1.));
   graph_.bring(solution_product_, sources, [](std::size_t) {});
   compose();
   return result_;
 }
 
-void LeafField::makeSolutions(std::span<const std::size_t> stale) {
+void LeafField::makeSolutions(std::span<const std::size_t> stale, const Progress& progress) {
   const Stopwatch watch(graph_.cost(solution_product_).seconds);
   std::array<std::vector<ElementOptics>, kBands> optics;
   for (std::size_t band = 0; band < kBands; ++band)
@@ -250,14 +162,12 @@ void LeafField::makeSolutions(std::span<const std::size_t> stale) {
   // One for all bands, so that it is the same whichever sources are stale.
   std::vector<FieldProblem> all_bands;
   for (std::size_t band = 0; band < kBands; ++band)
-    all_bands.push_back(
-        {.optics = optics[band], .ground_albedo = lighting_.ground_albedo[static_cast<int>(band)]});
+    all_bands.push_back({.optics = optics[band], .ground_albedo = lighting_.ground_albedo[static_cast<int>(band)]});
   graph_.bring(recollision_product_, kOnly, [&](std::size_t) {
     albedo_ = largestAlbedo(all_bands);
-    recollision_ = recollision(geometry(), albedo_);
+    recollision_ = recollision(geometry(), albedo_, progress);
   });
-  std::vector<FieldSolution> solutions =
-      solveField(geometry(), problems, recollision_, effort_.solver);
+  std::vector<FieldSolution> solutions = solveField(geometry(), problems, recollision_, effort_.solver, progress);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     auto& of_bands = solutions_[asked[i].source];
     for (std::size_t band = asked[i].band + 1; band < kBands && asked[i].source != kSky; ++band)
@@ -267,50 +177,16 @@ void LeafField::makeSolutions(std::span<const std::size_t> stale) {
 }
 
 void LeafField::compose() {
-  result_ = {};
-  // What a source's solution counts for in a band.
-  struct Part {
-    std::size_t source;
-    glm::vec3 scale;
+  std::vector<FieldPart> parts;
+  const auto add = [&](std::size_t source, const glm::vec3& scale) {
+    FieldPart& part = parts.emplace_back();
+    part.scale = scale;
+    if (source != kSky) part.direct = &direct_[source];
+    for (std::size_t band = 0; band < kBands; ++band) part.solutions[band] = &solutions_[source][band];
   };
-  std::vector<Part> parts;
-  for (std::size_t sun = 0; sun < lighting_.suns.size(); ++sun) parts.push_back({sun, lighting_.suns[sun].irradiance});
-  if (lighting_.sky) parts.push_back({kSky, glm::vec3(1.f)});
-  for (const Part& part : parts)
-    for (std::size_t band = 0; band < kBands; ++band) {
-      const FieldSolution& solution = solutions_[part.source][band];
-      const auto scale = double{part.scale[static_cast<int>(band)]};
-      FieldBalance& balance = result_.balance[band];
-      balance.in += scale * solution.balance.in;
-      balance.absorbed_leaves += scale * solution.balance.absorbed_leaves;
-      balance.absorbed_wood += scale * solution.balance.absorbed_wood;
-      balance.absorbed_ground += scale * solution.balance.absorbed_ground;
-      balance.out_up += scale * solution.balance.out_up;
-      balance.out_down += scale * solution.balance.out_down;
-      result_.iterations = std::max(result_.iterations, solution.iterations);
-      result_.error_bound = std::max(result_.error_bound, solution.error_bound);
-      result_.converged = result_.converged && solution.converged;
-    }
-  std::vector<LeafLight> leaves(mesh_.leaf_count, LeafLight{});
-  std::vector<float> areas(mesh_.leaf_count);
-  for (std::size_t i = 0; i < elements_.leaf_elements; ++i) areas[elements_.leaf[i]] += elements_.area[i];
-  for (std::size_t i = 0; i < elements_.leaf_elements; ++i) {
-    LeafLight& leaf = leaves[elements_.leaf[i]];
-    const float share = elements_.area[i] / areas[elements_.leaf[i]];
-    for (const Part& part : parts)
-      for (std::size_t band = 0; band < kBands; ++band) {
-        const float scale = share * part.scale[static_cast<int>(band)];
-        const std::vector<float>& scattered = solutions_[part.source][band].scattered;
-        leaf.scattered[band].front += scale * scattered[2 * i];
-        leaf.scattered[band].back += scale * scattered[2 * i + 1];
-        if (part.source == kSky) continue;
-        leaf.direct[band].front += scale * direct_[part.source].irradiance[2 * i];
-        leaf.direct[band].back += scale * direct_[part.source].irradiance[2 * i + 1];
-      }
-  }
-  for (std::size_t tree = 0; tree < stand_.trees.size(); ++tree)
-    result_.trees.emplace_back(leaves.begin() + static_cast<std::ptrdiff_t>(first_leaf_[tree]),
-                               leaves.begin() + static_cast<std::ptrdiff_t>(first_leaf_[tree + 1]));
+  for (std::size_t sun = 0; sun < lighting_.suns.size(); ++sun) add(sun, lighting_.suns[sun].irradiance);
+  if (lighting_.sky) add(kSky, glm::vec3(1.f));
+  result_ = fieldResult(elements_, parts);
 }
 
 }  // namespace sunfleck

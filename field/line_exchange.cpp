@@ -7,8 +7,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <mutex>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 #include "core/available_memory.hpp"
@@ -25,7 +27,8 @@ using detail::sideMet;
 constexpr std::size_t kChunks = 16;               // of axes, whose links are counted and written one after the other
 constexpr std::uint32_t kFirstOnLine = 1u << 31;  // marks a side, of which there are fewer
 
-// What the lines along one axis cross: the sides they come to and where, line by line; lines that cross nothing left out.
+// What the lines along one axis cross: the sides they come to and where, line by line; lines that cross nothing left
+// out.
 struct AxisCrossings {
   std::vector<std::uint32_t> sides;
   std::vector<glm::u16vec3> places;
@@ -98,6 +101,26 @@ double totalArea(const FieldElements& elements) {
   return std::accumulate(elements.area.begin(), elements.area.end(), 0.);
 }
 
+// Tells of axes that threads are done with, one thread at a time.
+class AxesDone {
+ public:
+  AxesDone(const Progress& progress, std::size_t all) : progress_(progress), all_(static_cast<double>(all)) {}
+  bool oneMore() {  // whether to go on
+    const std::lock_guard lock(mutex_);
+    goes_on_ = goes_on_ && goOn(progress_, ++done_ / all_);
+    return goes_on_;
+  }
+  void requireGoOn() const {
+    if (!goes_on_) throw std::runtime_error("interrupted");
+  }
+
+ private:
+  const Progress& progress_;
+  double all_, done_ = 0.;
+  bool goes_on_ = true;
+  std::mutex mutex_;
+};
+
 // A chunk's share of the links of each side, met and outside; then where its next link goes.
 struct ChunkLinks {
   std::vector<std::uint32_t> met, outside;
@@ -140,7 +163,7 @@ std::size_t LineExchange::memoryBytes() const {
 
 // (F2)
 LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
-                          const ExchangeEffort& effort) {
+                          const ExchangeEffort& effort, const Progress& progress) {
   require(elements.leaf_elements > 0, "number of leaves", elements.leaf_elements, "at least 1");
   require(effort.axes >= 1 && effort.axes <= 16'384, "axes of the exchange", effort.axes, "1 .. 16384");
   require(effort.crossings > 0.f && effort.crossings <= 1e4f, "crossings of the exchange", effort.crossings,
@@ -170,6 +193,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   const auto axesOfChunk = [&](std::size_t chunk) {
     return std::pair(chunk * axes / kChunks, (chunk + 1) * axes / kChunks);
   };
+  AxesDone axes_done(progress, 2 * axes);
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
     Work work;
     ChunkLinks& links = chunks[chunk];
@@ -185,8 +209,10 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
       forLinks(
           found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t, const glm::u16vec3&) { ++links.met[side]; },
           [&](std::uint32_t side, std::uint16_t, const glm::u16vec3&) { ++links.outside[side]; });
+      if (!axes_done.oneMore()) return;
     }
   });
+  axes_done.requireGoOn();
 
   const auto starts = [&](std::vector<std::uint64_t>& first, std::vector<std::uint32_t> ChunkLinks::*counts) {
     first.resize(sides + 1);
@@ -207,7 +233,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
     ChunkLinks& links = chunks[chunk];
     const auto [begin, end] = axesOfChunk(chunk);
-    for (std::size_t axis = begin; axis < end; ++axis)
+    for (std::size_t axis = begin; axis < end; ++axis) {
       forLinks(
           found[axis], axis, axes,
           [&](std::uint32_t side, std::uint32_t source, const glm::u16vec3& place) {
@@ -220,7 +246,10 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
             exchange.outside[link] = direction;
             exchange.open_at[link] = place;
           });
+      if (!axes_done.oneMore()) return;
+    }
   });
+  axes_done.requireGoOn();
   exchange.lines.resize(elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i)
     exchange.lines[i] = static_cast<std::uint32_t>(exchange.first[2 * i + 1] - exchange.first[2 * i] +

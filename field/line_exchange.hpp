@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/directions.hpp"
+#include "core/progress.hpp"
 #include "core/tree_mesh.hpp"
 #include "field/elements.hpp"
 
@@ -52,12 +53,12 @@ struct LineExchange {
   std::vector<std::uint64_t> first;
   std::vector<std::uint32_t> sees;
   std::vector<glm::u16vec3> seen_at;  // where on the element that it sees, as sees; see `places`
-  std::vector<std::uint32_t> lines;  // of each element: those that cross it; as many come to either side
+  std::vector<std::uint32_t> lines;   // of each element: those that cross it; as many come to either side
   // Of each side, the directions in which light comes to it from outside, as first and sees.
   std::vector<std::uint64_t> first_outside;
   std::vector<std::uint16_t> outside;
-  std::vector<glm::u16vec3> open_at;      // where on its own element, as outside
-  std::vector<std::uint32_t> below;       // of each side, those of them that rise: from the ground
+  std::vector<glm::u16vec3> open_at;  // where on its own element, as outside
+  std::vector<std::uint32_t> below;   // of each side, those of them that rise: from the ground
   PlaceCode places;
   std::vector<Direction> directions;      // in which light travels: along each axis, then against it
   std::vector<std::uint64_t> free_lines;  // with a period: of each axis, lines that meet nothing
@@ -69,8 +70,9 @@ struct LineExchange {
 };
 
 //   period  side lengths of the repeated rectangle [m]; none: the stand is alone
-// Throws InvalidInput where the memory that it takes is more than there is.
+// Throws InvalidInput where the memory that it takes is more than there is, and std::runtime_error("interrupted") when
+// `progress`, told after each axis, ends it.
 LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
-                          const ExchangeEffort& effort = {});
+                          const ExchangeEffort& effort = {}, const Progress& progress = {});
 
 }  // namespace sunfleck

@@ -1,32 +1,23 @@
 #include "field/near_return.hpp"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 
 namespace sunfleck {
 namespace {
 
-constexpr std::size_t kSides = 16'384;  // that are looked at, about
-constexpr std::uint32_t kLines = 16;    // of a side that are paired, about
-constexpr std::size_t kRoom = 32;       // for them
-constexpr float kNear = 0.5f;           // distance at which two lines are near [square roots of the element's area]
-constexpr std::uint32_t kOutside = ~0u;  // or wood: not asked for
+constexpr double kPairs = 4e6;         // of lines that are looked at, about
+constexpr double kLeastLines = 16.;    // of a side, about
+constexpr float kNear = 0.5f;          // distance at which two lines are near [square roots of the element's area]
+constexpr std::uint32_t kOther = ~0u;  // what is no leaf
 
 // Where a line leaves a side, and the leaf that it meets.
 struct Line {
   glm::vec3 place;
   std::uint32_t leaf;
-};
-
-// Lines of a side, thinned out.
-struct View {
-  std::array<Line, kRoom> lines;
-  std::size_t count = 0;
-  void add(const Line& line) {
-    if (count < kRoom) lines[count++] = line;
-  }
 };
 
 // Of pairs of lines from one side, how often both meet the same leaf: over all pairs, and by a straight line over the
@@ -35,14 +26,14 @@ struct Pairs {
   double all = 0., all_same = 0., meet = 0.;
   double near = 0., near_same = 0., distance = 0., squares = 0., same_distance = 0.;
 
-  void add(const View& view, float per_metre) {
-    for (std::size_t a = 0; a < view.count; ++a)
+  void add(std::span<const Line> lines, float per_metre) {
+    for (std::size_t a = 0; a < lines.size(); ++a)
       for (std::size_t b = 0; b < a; ++b) {
-        const double d = double{per_metre * glm::distance(view.lines[a].place, view.lines[b].place)};
-        const bool same = view.lines[a].leaf == view.lines[b].leaf && view.lines[a].leaf != kOutside;
+        const double d = double{per_metre * glm::distance(lines[a].place, lines[b].place)};
+        const bool same = lines[a].leaf == lines[b].leaf && lines[a].leaf != kOther;
         all += 1.;
-        meet += 0.5 * ((view.lines[a].leaf != kOutside) + (view.lines[b].leaf != kOutside));
         all_same += same;
+        meet += 0.5 * ((lines[a].leaf != kOther) + (lines[b].leaf != kOther));
         if (d > double{kNear}) continue;
         near += 1.;
         near_same += same;
@@ -60,11 +51,16 @@ struct Pairs {
   }
 };
 
-// Scatters whole numbers evenly (Steele, Lea & Flood 2014).
-std::uint32_t mixed(std::uint64_t number) {
+// Scatters whole numbers evenly (Steele, Lea & Flood 2014), over 0 .. 1.
+double scattered(std::uint64_t number) {
   number = (number ^ (number >> 30)) * 0xbf58476d1ce4e5b9u;
   number = (number ^ (number >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<std::uint32_t>(number >> 32);
+  return static_cast<double>(number >> 33) * 0x1p-31;
+}
+// By what a place is and not by what number it has: so that the order of leaves and trees does not matter.
+double scattered(const glm::vec3& place) {
+  return scattered(std::uint64_t{std::bit_cast<std::uint32_t>(place.x)} << 32 ^
+                   std::uint64_t{std::bit_cast<std::uint32_t>(place.y)} << 16 ^ std::bit_cast<std::uint32_t>(place.z));
 }
 
 }  // namespace
@@ -72,24 +68,38 @@ std::uint32_t mixed(std::uint64_t number) {
 // (F7)
 std::vector<float> nearReturn(const FieldElements& elements, const LineExchange& exchange,
                               std::span<const std::uint32_t> kinds, std::size_t count) {
-  const std::size_t sides = 2 * elements.leaf_elements, step = (sides + kSides - 1) / kSides;
-  std::vector<View> views((sides + step - 1) / step);
-  const auto add = [&](std::size_t side, std::uint64_t number, const glm::u16vec3& place, std::uint32_t leaf) {
-    if (side >= sides || side % step != 0) return;
-    if (std::uint64_t{mixed(number)} * exchange.lines[side / 2] >> 32 >= kLines) return;
-    views[side / step].add({exchange.places.place(place), leaf});
+  // Of so many sides, and of so many of their lines, that pairs are as many as wanted.
+  const auto sides = static_cast<double>(2 * elements.leaf_elements);
+  const double lines_wanted = std::max(kLeastLines, std::sqrt(2. * kPairs / sides));
+  const double sides_wanted = 2. * kPairs / (lines_wanted * lines_wanted);
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> view_of(elements.leaf_elements, kNone);
+  std::vector<std::uint32_t> viewed;
+  for (std::size_t i = 0; i < elements.leaf_elements; ++i)
+    if (scattered(elements.centre[i]) * sides <= sides_wanted) {
+      view_of[i] = static_cast<std::uint32_t>(viewed.size());
+      viewed.push_back(static_cast<std::uint32_t>(i));
+    }
+  std::vector<std::vector<Line>> views(2 * viewed.size());
+  const auto add = [&](std::size_t side, const glm::u16vec3& code, std::uint32_t leaf) {
+    const std::size_t element = side / 2;
+    if (element >= view_of.size() || view_of[element] == kNone) return;
+    const glm::vec3 place = exchange.places.place(code);
+    // Other bits than the side's.
+    if (scattered(place + 1.f) * exchange.lines[element] > lines_wanted) return;
+    views[2 * view_of[element] + side % 2].push_back({place, leaf});
   };
   // What a place sees stands where it is seen from.
   for (std::size_t side = 0; side < exchange.sides(); ++side) {
-    const std::uint32_t leaf = side < sides ? elements.leaf[side / 2] : kOutside;
+    const std::uint32_t leaf = side / 2 < elements.leaf_elements ? elements.leaf[side / 2] : kOther;
     for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i)
-      add(exchange.sees[i], 2 * i, exchange.seen_at[i], leaf);
+      add(exchange.sees[i], exchange.seen_at[i], leaf);
     for (std::uint64_t i = exchange.first_outside[side]; i < exchange.first_outside[side + 1]; ++i)
-      add(side, 2 * i + 1, exchange.open_at[i], kOutside);
+      add(side, exchange.open_at[i], kOther);
   }
   std::vector<Pairs> pairs(count);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const std::size_t element = i * step / 2;
+    const std::uint32_t element = viewed[i / 2];
     pairs[kinds[element]].add(views[i], 1.f / std::sqrt(elements.area[element]));
   }
   std::vector<float> shares;

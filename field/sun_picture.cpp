@@ -64,8 +64,7 @@ std::uint32_t SunPicture::side(std::size_t pixel) const {
 
 std::uint32_t SunPicture::litSide(std::uint32_t element, const glm::vec3& place) const {
   const std::size_t pixel = grid_.lineAt(place);
-  const Crossing64 crossing =
-      pixel < pixels() ? nearest_[pixel].load(std::memory_order_relaxed) : kNothing;
+  const Crossing64 crossing = pixel < pixels() ? nearest_[pixel].load(std::memory_order_relaxed) : kNothing;
   if (crossing != kNothing) {
     const std::uint32_t met = detail::sideMet(crossing);
     if (met / 2 == element) return met;

@@ -25,6 +25,12 @@ FieldLighting lightingOf(const Scene& scene) {
   return lighting;
 }
 
+std::vector<std::shared_ptr<const TreeMesh>> meshesOf(const Scene& scene) {
+  std::vector<std::shared_ptr<const TreeMesh>> meshes;
+  for (const TreeKind& kind : scene.kinds) meshes.push_back(kind.mesh);
+  return meshes;
+}
+
 std::size_t leavesOf(const Scene& scene) {
   std::size_t leaves = 0;
   for (const Placement& tree : scene.stand.trees) leaves += scene.kindOf(tree).mesh->leaf_count;
@@ -42,7 +48,16 @@ void requireField(const Scene& scene) {
           "at most " + std::to_string(kMostFieldLeaves) + " for the model field (others take more)");
 }
 
-StandField::StandField(const FieldEffort& effort) : field_(effort) {}
+StandField::StandField(const FieldEffort& effort, const CellFieldEffort& cells) : field_(effort), on_cells_(cells) {}
+
+std::vector<ProductCost> StandField::costs() const {
+  std::vector<ProductCost> costs = field_.costs();
+  for (ProductCost& cost : on_cells_.costs()) {
+    cost.name = "preview: " + cost.name;
+    costs.push_back(std::move(cost));
+  }
+  return costs;
+}
 
 StandField::Kind StandField::kindOf(const std::shared_ptr<const TreeMesh>& mesh) {
   Kind kind{.mesh = mesh, .places = {}, .leaves_around = {}};
@@ -75,13 +90,20 @@ StandField::Kind StandField::kindOf(const std::shared_ptr<const TreeMesh>& mesh)
   return kind;
 }
 
-void StandField::update(const Scene& scene) {
+bool StandField::upToDate(const Scene& scene) const {
+  return field_.upToDate(meshesOf(scene), scene.stand, lightingOf(scene));
+}
+
+void StandField::update(const Scene& scene, FieldBy by, const Progress& progress) {
   requireField(scene);
-  std::vector<std::shared_ptr<const TreeMesh>> meshes;
-  for (const TreeKind& kind : scene.kinds) meshes.push_back(kind.mesh);
+  const std::vector<std::shared_ptr<const TreeMesh>> meshes = meshesOf(scene);
   result_ = nullptr;
-  field_.setStand(meshes, scene.stand);
-  result_ = &field_.solve(lightingOf(scene));
+  by_ = by;
+  const auto solved = [&](auto& field) {
+    field.setStand(meshes, scene.stand);
+    return &field.solve(lightingOf(scene), progress);
+  };
+  result_ = by == FieldBy::lines ? solved(field_) : solved(on_cells_);
   kinds_.resize(meshes.size());
   for (std::size_t i = 0; i < meshes.size(); ++i)
     if (kinds_[i].mesh != meshes[i]) kinds_[i] = kindOf(meshes[i]);

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.hpp"
+#include "field/cell_field.hpp"
 #include "field/leaf_field.hpp"
 #include "render/scene.hpp"
 
@@ -16,14 +18,24 @@ namespace sunfleck {
 bool fieldFits(const Scene& scene);
 void requireField(const Scene& scene);
 
+// How the field is solved: along lines, exactly but for their number; or on cells alone, as a preview.
+enum class FieldBy { lines, cells };
+
+// On cells as a preview has them: 16 along a tree, and a coarser picture from the sun.
+inline constexpr CellFieldEffort kPreviewEffort{.direct = {.pixels = 16.f}, .solver = {.error = 0.01f}};
+
 // (F26) The light field of a scene's stand, kept for pictures: what comes to either side of each place of each tree by
 // all but the suns' direct light. A place is a leaf or, for the wood, a cell of the tree.
 class StandField {
  public:
-  explicit StandField(const FieldEffort& effort = {});
+  explicit StandField(const FieldEffort& effort = {}, const CellFieldEffort& cells = kPreviewEffort);
 
-  // Brings it up to date for the scene. Throws InvalidInput as LeafField, requireField() and sunAndSky() do.
-  void update(const Scene& scene);
+  // Brings it up to date for the scene. Throws InvalidInput as LeafField or CellField, requireField() and sunAndSky()
+  // do, and std::runtime_error("interrupted") when `progress` ends it: then nothing is told until the next update.
+  void update(const Scene& scene, FieldBy by = FieldBy::lines, const Progress& progress = {});
+  // Whether an update along lines would compute no product anew.
+  bool upToDate(const Scene& scene) const;
+  FieldBy by() const { return by_; }  // what is told
 
   // Of each triangle of a kind of the scene, leaves before wood, its place.
   std::span<const std::uint32_t> places(std::uint32_t kind) const { return kinds_[kind].places; }
@@ -33,7 +45,7 @@ class StandField {
   std::uint64_t revision() const { return revision_; }
 
   const FieldResult& result() const { return *result_; }
-  std::vector<ProductCost> costs() const { return field_.costs(); }
+  std::vector<ProductCost> costs() const;  // of the field along lines, then of that on cells, "preview: "
 
  private:
   // The wood of a kind is lit as the leaves around it.
@@ -45,6 +57,8 @@ class StandField {
   static Kind kindOf(const std::shared_ptr<const TreeMesh>& mesh);
 
   LeafField field_;
+  CellField on_cells_;
+  FieldBy by_ = FieldBy::lines;
   const FieldResult* result_ = nullptr;
   std::vector<Kind> kinds_;
   std::vector<std::vector<glm::vec3>> sides_;

@@ -320,7 +320,8 @@ void StandGeometry::updateEnvironment(std::span<const std::size_t> instances, co
 }
 
 void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
-                           std::optional<std::span<const std::size_t>> trees, const Progress& progress) {
+                           std::optional<std::span<const std::size_t>> trees, const Progress& progress,
+                           const Progress& field_progress) {
   costs_before_ = costs();
   field_told_ = false;
   light_seconds_ = compensation_seconds_ = 0.;
@@ -360,8 +361,12 @@ void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
   updateEnvironment(instances, needs, progress);
   if (!needs.field) return;
   if (!field_) field_ = std::make_unique<StandField>();
-  field_->update(scene);
+  field_->update(scene, needs.preview ? FieldBy::cells : FieldBy::lines, field_progress);
   field_told_ = true;
+}
+
+bool StandGeometry::fieldUpToDate(const Scene& scene) const {
+  return field_ && field_->upToDate(scene);
 }
 
 std::span<const float> StandGeometry::compensation(std::size_t tree, std::size_t light) const {

@@ -49,6 +49,7 @@ struct GeometryNeeds {
   bool sky_light = true;     // where a sky shines: of the cells and, where the ground reflects, of the ground
   bool ground_light = true;  // what the ground sends back to the cells, where it reflects
   bool field = false;        // the light field, of all trees; of the sky then what comes to the ground
+  bool preview = false;      // of the field on cells alone: in a tenth of the time, and some per cent off
 };
 GeometryNeeds needsOf(Model model);
 
@@ -88,9 +89,13 @@ class StandGeometry {
   // Brings the lights' maps up to date for the scene, and what else is needed of the trees listed. Throws InvalidInput
   // as requireDrawable() and sunAndSky() do, and std::runtime_error("interrupted") when `progress` ends it: what is
   // told then may be of the former scene.
-  //   trees  of the scene's stand; none: all
+  //   trees           of the scene's stand; none: all
+  //   field_progress  of the light field, which comes last
   void update(const Scene& scene, const GeometryNeeds& needs = {},
-              std::optional<std::span<const std::size_t>> trees = std::nullopt, const Progress& progress = {});
+              std::optional<std::span<const std::size_t>> trees = std::nullopt, const Progress& progress = {},
+              const Progress& field_progress = {});
+  // Whether the light field along lines is up to date for the scene, but for sums.
+  bool fieldUpToDate(const Scene& scene) const;
 
   const GeometryEffort& effort() const { return effort_; }
   std::span<const StandLight> lights() const { return lights_; }             // at most kMostSuns; none by night

@@ -50,8 +50,8 @@ class LineGrid {
   // Where a line is at a depth [m]; with a period, but for whole periods.
   glm::vec3 place(std::size_t line, float depth) const {
     const auto columns = static_cast<std::size_t>(size_.x);
-    return corner_ + static_cast<float>(line % columns) * column_step_ + static_cast<float>(line / columns) * row_step_ +
-           depth * along_;
+    return corner_ + static_cast<float>(line % columns) * column_step_ +
+           static_cast<float>(line / columns) * row_step_ + depth * along_;
   }
   // The line whose pixel a place lies in; lines() if in none.
   std::size_t lineAt(const glm::vec3& place) const {

@@ -1,14 +1,9 @@
 #include "render/compare/scene_contestants.hpp"
 
-#include <array>
 #include <map>
 #include <optional>
 #include <utility>
 
-#include "field/clumping.hpp"
-#include "field/direct_light.hpp"
-#include "field/elements.hpp"
-#include "field/grid_field.hpp"
 #include "render/compare/exact_powers.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
@@ -69,70 +64,28 @@ class ModelContestant final : public SceneContestant {
 
 class FieldContestant final : public SceneContestant {
  public:
-  FieldContestant(const Scene& scene, int axes, int band)
-      : scene_(scene), turned_(turned(scene)), band_(band), effort_{.exchange = {.axes = axes}} {}
+  //   number  of axes of lines, or of cells along a tree
+  FieldContestant(const Scene& scene, FieldBy by, int number, int band)
+      : scene_(scene), turned_(turned(scene)), band_(band), by_(by), number_(number) {}
 
-  std::vector<float> fromNothing(int /*round*/, const Progress& /*progress*/) override {
-    field_.emplace(effort_);
-    return answer();
+  std::vector<float> fromNothing(int /*round*/, const Progress& progress) override {
+    field_.emplace(FieldEffort{.exchange = {.axes = number_}}, CellFieldEffort{.cells = {.cells = number_}});
+    return answer(progress);
   }
-  void turnAway(const Progress& /*progress*/) override { field_->update(turned_); }
-  std::vector<float> sunTurned(int /*round*/, const Progress& /*progress*/) override { return answer(); }
+  void turnAway(const Progress& progress) override { field_->update(turned_, by_, progress); }
+  std::vector<float> sunTurned(int /*round*/, const Progress& progress) override { return answer(progress); }
 
  private:
-  std::vector<float> answer() {
-    field_->update(scene_);
+  std::vector<float> answer(const Progress& progress) {
+    field_->update(scene_, by_, progress);
     return leafIrradiance(field_->result(), scene_, band_);
   }
 
   const Scene scene_, turned_;
   const int band_;
-  const FieldEffort effort_;
+  const FieldBy by_;
+  const int number_;
   std::optional<StandField> field_;
-};
-
-// The field on cells alone, of one tree, not turned.
-class GridContestant final : public SceneContestant {
- public:
-  GridContestant(const Scene& scene, int cells, int band)
-      : mesh_(scene.kinds[0].mesh),
-        period_(scene.stand.period),
-        light_(scene.sun().light()),
-        cells_(cells),
-        optics_{.leaf = scene.kinds[0].leaf[static_cast<std::size_t>(band)],
-                .wood_reflectance = scene.kinds[0].wood_reflectance[band]} {}
-
-  std::vector<float> fromNothing(int /*round*/, const Progress& /*progress*/) override {
-    elements_ = fieldElements(*mesh_);
-    const PlacedElements tree{.mesh = mesh_.get(), .elements = &elements_};
-    CellMedium alone = cellMedium(std::span(&tree, 1), {.cells = cells_});
-    const float clumped = clumping(*mesh_, alone);
-    field_.emplace(period_ ? cellMedium(std::span(&tree, 1), {.cells = cells_}, period_) : std::move(alone),
-                   std::span(&clumped, 1));
-    return answer();
-  }
-  void turnAway(const Progress& /*progress*/) override {}  // nothing is kept that hangs on the sun
-  std::vector<float> sunTurned(int /*round*/, const Progress& /*progress*/) override { return answer(); }
-
- private:
-  std::vector<float> answer() {
-    constexpr std::array kDark{0.f};
-    const GridSolution solution = field_->solve({.optics = {{optics_}},
-                                                 .direct = directLight(*mesh_, elements_, period_, light_).irradiance,
-                                                 .entering = field_->evenSky(kDark, kDark, {})});
-    std::vector<float> of_elements(elements_.size());
-    for (std::size_t i = 0; i < of_elements.size(); ++i)
-      of_elements[i] = solution.irradiance[2 * i] + solution.irradiance[2 * i + 1];
-    return leafMeans(elements_, mesh_->leaf_count, of_elements);
-  }
-
-  const std::shared_ptr<const TreeMesh> mesh_;
-  const std::optional<glm::vec2> period_;
-  const Direction light_;
-  const int cells_;
-  const GridOptics optics_;
-  FieldElements elements_;
-  std::optional<GridField> field_;
 };
 
 class TraceContestant final : public SceneContestant {
@@ -182,14 +135,12 @@ std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const std
       all.push_back({.method = nameOf(model),
                      .setting = static_cast<double>(axes),
                      .work = 1e4 * axes,
-                     .contestant = std::make_unique<FieldContestant>(scattering, axes, band)});
-    const bool one_tree = scene.stand.trees.size() == 1 && scene.stand.trees[0].rotation == 0.f;
-    if (!one_tree || models.size() == 1) continue;  // under other light than one sun's the field stands alone
+                     .contestant = std::make_unique<FieldContestant>(scattering, FieldBy::lines, axes, band)});
     for (const int cells : {8, 16, 24, 32})
       all.push_back({.method = "grid",
                      .setting = static_cast<double>(cells),
                      .work = 1e5,
-                     .contestant = std::make_unique<GridContestant>(scattering, cells, band)});
+                     .contestant = std::make_unique<FieldContestant>(scattering, FieldBy::cells, cells, band)});
   }
   for (std::size_t i = 0; i < paths.size(); ++i) {
     TraceEffort effort = trace;

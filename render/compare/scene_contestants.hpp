@@ -34,8 +34,8 @@ struct NamedSceneContestant {
   std::unique_ptr<SceneContestant> contestant;
 };
 
-// The models, the field with several numbers of axes, of one tree the field on cells alone, and Monte Carlo, which does
-// not know the random numbers of seed `trace.seed` itself.
+// The models, the field with several numbers of axes, the same on cells alone, and Monte Carlo, which does not know the
+// random numbers of seed `trace.seed` itself.
 //   scene  must outlive them
 //   paths  of Monte Carlo, of each contestant; each at least kLeastUnits
 std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const std::vector<Model>& models,

@@ -1,0 +1,48 @@
+#include "field/field_result.hpp"
+
+#include <algorithm>
+
+namespace sunfleck {
+
+FieldResult fieldResult(const StandElements& stand, std::span<const FieldPart> parts) {
+  FieldResult result;
+  for (const FieldPart& part : parts)
+    for (std::size_t band = 0; band < kBands; ++band) {
+      const FieldSolution& solution = *part.solutions[band];
+      const auto scale = double{part.scale[static_cast<int>(band)]};
+      FieldBalance& balance = result.balance[band];
+      balance.in += scale * solution.balance.in;
+      balance.absorbed_leaves += scale * solution.balance.absorbed_leaves;
+      balance.absorbed_wood += scale * solution.balance.absorbed_wood;
+      balance.absorbed_ground += scale * solution.balance.absorbed_ground;
+      balance.out_up += scale * solution.balance.out_up;
+      balance.out_down += scale * solution.balance.out_down;
+      result.iterations = std::max(result.iterations, solution.iterations);
+      result.error_bound = std::max(result.error_bound, solution.error_bound);
+      result.converged = result.converged && solution.converged;
+    }
+  const FieldElements& elements = stand.elements;
+  std::vector<LeafLight> leaves(stand.mesh.leaf_count, LeafLight{});
+  std::vector<float> areas(stand.mesh.leaf_count);
+  for (std::size_t i = 0; i < elements.leaf_elements; ++i) areas[elements.leaf[i]] += elements.area[i];
+  for (std::size_t i = 0; i < elements.leaf_elements; ++i) {
+    LeafLight& leaf = leaves[elements.leaf[i]];
+    const float share = elements.area[i] / areas[elements.leaf[i]];
+    for (const FieldPart& part : parts)
+      for (std::size_t band = 0; band < kBands; ++band) {
+        const float scale = share * part.scale[static_cast<int>(band)];
+        const std::vector<float>& scattered = part.solutions[band]->scattered;
+        leaf.scattered[band].front += scale * scattered[2 * i];
+        leaf.scattered[band].back += scale * scattered[2 * i + 1];
+        if (!part.direct) continue;
+        leaf.direct[band].front += scale * part.direct->irradiance[2 * i];
+        leaf.direct[band].back += scale * part.direct->irradiance[2 * i + 1];
+      }
+  }
+  for (std::size_t tree = 0; tree + 1 < stand.first_leaf.size(); ++tree)
+    result.trees.emplace_back(leaves.begin() + static_cast<std::ptrdiff_t>(stand.first_leaf[tree]),
+                              leaves.begin() + static_cast<std::ptrdiff_t>(stand.first_leaf[tree + 1]));
+  return result;
+}
+
+}  // namespace sunfleck
