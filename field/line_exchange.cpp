@@ -68,7 +68,12 @@ AxisCrossings crossingsAlong(const LineGrid& grid, const PlaceCode& places, Work
   result.sides.reserve(work.found.size());
   result.places.reserve(work.found.size());
   std::uint32_t begin = 0;
-  for (std::size_t line = 0; line < grid.lines(); ++line) {
+  int column = 0, row = 0;
+  for (std::size_t line = 0; line < grid.lines(); ++line, ++column) {
+    if (column == grid.size().x) {
+      column = 0;
+      ++row;
+    }
     const std::uint32_t end = work.next[line];
     if (begin == end) {
       ++result.free_lines;
@@ -77,7 +82,7 @@ AxisCrossings crossingsAlong(const LineGrid& grid, const PlaceCode& places, Work
     sortLine(&work.sorted[begin], work.sorted.data() + end);
     for (std::uint32_t i = begin; i < end; ++i) {
       result.sides.push_back(sideMet(work.sorted[i]) | (i == begin ? kFirstOnLine : 0));
-      result.places.push_back(places.code(grid.place(line, detail::depthOf(work.sorted[i]))));
+      result.places.push_back(places.code(grid.place(column, row, detail::depthOf(work.sorted[i]))));
     }
     begin = end;
   }

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -62,15 +63,32 @@ std::uint32_t SunPicture::side(std::size_t pixel) const {
   return crossing == kNothing ? kNoSide : detail::sideMet(crossing);
 }
 
-std::uint32_t SunPicture::litSide(std::uint32_t element, const glm::vec3& place) const {
-  const std::size_t pixel = grid_.lineAt(place);
-  const Crossing64 crossing = pixel < pixels() ? nearest_[pixel].load(std::memory_order_relaxed) : kNothing;
-  if (crossing != kNothing) {
-    const std::uint32_t met = detail::sideMet(crossing);
+void SunPicture::litSides(std::span<const std::uint32_t> elements, std::span<const glm::vec3> places,
+                          std::span<std::uint32_t> sides) const {
+  // Pixels lie anywhere in memory: all of a batch are called for before the first is looked at.
+  constexpr std::size_t kBatch = 64;
+  std::array<std::size_t, kBatch> pixel;
+  std::array<float, kBatch> depth;
+  for (std::size_t first = 0; first < places.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, places.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      pixel[i] = grid_.lineAt(places[first + i], depth[i]);
+      if (pixel[i] < pixels()) __builtin_prefetch(&nearest_[pixel[i]]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const Crossing64 crossing = pixel[i] < pixels() ? nearest_[pixel[i]].load(std::memory_order_relaxed) : kNothing;
+      sides[first + i] = litSide(elements[first + i], depth[i], crossing);
+    }
+  }
+}
+
+std::uint32_t SunPicture::litSide(std::uint32_t element, float depth, Crossing64 nearest) const {
+  if (nearest != kNothing) {
+    const std::uint32_t met = detail::sideMet(nearest);
     if (met / 2 == element) return met;
     const std::uint32_t leaf = elements_->leaf[element];
     const bool same_leaf = leaf != FieldElements::kWood && leaf == elements_->leaf[met / 2];
-    if (!same_leaf && grid_.depthAt(place) > detail::depthOf(crossing)) return kNoSide;
+    if (!same_leaf && depth > detail::depthOf(nearest)) return kNoSide;
   }
   // The pixel's middle misses the element, or lies on one behind it.
   return 2 * element + (glm::dot(elements_->normal[element], along_) > 0.f);

@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/directions.hpp"
@@ -35,10 +36,13 @@ class SunPicture {
   double pixelArea() const { return grid_.lineArea(); }  // across the light [m^2]
   // 2 element for the front of one, 2 element + 1 for its back, or kNoSide where light passes.
   std::uint32_t side(std::size_t pixel) const;
-  // The side of an element that the sun lights at a place on it; kNoSide where another one is before it.
-  std::uint32_t litSide(std::uint32_t element, const glm::vec3& place) const;
+  // The sides of elements that the sun lights at places on them; kNoSide where another element is before one.
+  void litSides(std::span<const std::uint32_t> elements, std::span<const glm::vec3> places,
+                std::span<std::uint32_t> sides) const;
 
  private:
+  std::uint32_t litSide(std::uint32_t element, float depth, detail::Crossing64 nearest) const;
+
   const FieldElements* elements_;
   Direction along_;
   detail::LineGrid grid_;

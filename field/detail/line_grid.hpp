@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -48,26 +47,24 @@ class LineGrid {
   glm::ivec2 size() const { return size_; }
 
   // Where a line is at a depth [m]; with a period, but for whole periods.
-  glm::vec3 place(std::size_t line, float depth) const {
-    const auto columns = static_cast<std::size_t>(size_.x);
-    return corner_ + static_cast<float>(line % columns) * column_step_ +
-           static_cast<float>(line / columns) * row_step_ + depth * along_;
+  glm::vec3 place(int column, int row, float depth) const {
+    return corner_ + static_cast<float>(column) * column_step_ + static_cast<float>(row) * row_step_ + depth * along_;
   }
-  // The line whose pixel a place lies in; lines() if in none.
-  std::size_t lineAt(const glm::vec3& place) const {
-    const glm::vec2 pixel(glm::dot(place, right_) - shift_.x, glm::dot(place, up_) - shift_.y);
-    int column = static_cast<int>(std::floor(pixel.x)), row = static_cast<int>(std::floor(pixel.y));
+  // The line whose pixel a place lies in; lines() if in none. And the place's depth, as of crossings [m].
+  std::size_t lineAt(const glm::vec3& place, float& depth) const {
+    glm::vec2 pixel(glm::dot(place, right_) - shift_.x, glm::dot(place, up_) - shift_.y);
+    depth = glm::dot(place, depth_);
     if (surfaces_.period) {
-      column = (column % size_.x + size_.x) % size_.x;
-      row = (row % size_.y + size_.y) % size_.y;
-    } else if (column < 0 || row < 0 || column >= size_.x || row >= size_.y) {
-      return lines();
+      const glm::vec2 periods = pixel / glm::vec2(size_);
+      // Rounds down, without the call that std::floor is on old processors.
+      const glm::vec2 whole(static_cast<float>(static_cast<int>(periods.x) - (periods.x < 0.f)),
+                            static_cast<float>(static_cast<int>(periods.y) - (periods.y < 0.f)));
+      pixel -= whole * glm::vec2(size_);
     }
+    const int column = static_cast<int>(pixel.x), row = static_cast<int>(pixel.y);
+    if (pixel.x < 0.f || pixel.y < 0.f || column >= size_.x || row >= size_.y) return lines();
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(size_.x) + static_cast<std::size_t>(column);
   }
-
-  // As in crossings [m].
-  float depthAt(const glm::vec3& place) const { return glm::dot(place, depth_); }
 
   // Triangles of the stand: those of leaves, then those of wood.
   std::size_t triangles() const;
