@@ -18,9 +18,9 @@ namespace sunfleck {
 
 // How many lines exchange light.
 struct ExchangeEffort {
-  int axes = 64;  // directions of lines; light goes both ways [1]
+  int axes = 40;  // directions of lines; light goes both ways [1]
   // Of a leaf of mean area by the lines of one direction, in the mean; and of an element half as many at least [1].
-  float crossings = 1.f;
+  float crossings = 2.f;
 };
 
 // Places in a stand, to 1/65536 of its box or period.

@@ -1,6 +1,9 @@
 #include "field/near_return.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +15,7 @@ namespace {
 constexpr double kPairs = 1e6;         // of lines that are looked at, about
 constexpr double kLeastLines = 16.;    // of a side, about
 constexpr float kNear = 0.5f;          // distance at which two lines are near [square roots of the element's area]
+constexpr std::size_t kChunks = 16;    // of work for threads
 constexpr std::uint32_t kOther = ~0u;  // what is no leaf
 
 // Where a line leaves a side, and the leaf that it meets.
@@ -43,6 +47,17 @@ struct Pairs {
         squares += double{square};
         same_distance += same ? d : 0.;
       }
+  }
+
+  void add(const Pairs& other) {
+    all += other.all;
+    all_same += other.all_same;
+    meet += other.meet;
+    near += other.near;
+    near_same += other.near_same;
+    distance += other.distance;
+    squares += other.squares;
+    same_distance += other.same_distance;
   }
 
   double excess() const {
@@ -82,30 +97,46 @@ std::vector<float> nearReturn(const FieldElements& elements, const LineExchange&
       view_of[i] = static_cast<std::uint32_t>(viewed.size());
       viewed.push_back(static_cast<std::uint32_t>(i));
     }
-  std::vector<std::vector<Line>> views(2 * viewed.size());
-  const auto add = [&](std::size_t side, const glm::u16vec3& code, std::uint32_t leaf) {
-    const std::size_t element = side / 2;
-    if (element >= view_of.size() || view_of[element] == kNone) return;
-    const glm::vec3 place = exchange.places.place(code);
-    // Other bits than the side's.
-    if (scattered(place + 1.f) * exchange.lines[element] > lines_wanted) return;
-    views[2 * view_of[element] + side % 2].push_back({place, leaf});
+  // What a place sees stands where it is seen from. Chunks are put together in their order, so that sums are too.
+  struct Found {
+    std::uint32_t view;
+    Line line;
   };
-  // What a place sees stands where it is seen from.
-  for (std::size_t side = 0; side < exchange.sides(); ++side) {
-    const std::uint32_t leaf = side / 2 < elements.leaf_elements ? elements.leaf[side / 2] : kOther;
-    for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i)
-      add(exchange.sees[i], exchange.seen_at[i], leaf);
-    for (std::uint64_t i = exchange.first_outside[side]; i < exchange.first_outside[side + 1]; ++i)
-      add(side, exchange.open_at[i], kOther);
-  }
-  std::vector<Pairs> pairs(count);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const std::uint32_t element = viewed[i / 2];
-    pairs[kinds[element]].add(views[i], 1.f / std::sqrt(elements.area[element]));
-  }
+  std::array<std::vector<Found>, kChunks> found;
+  tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
+    const auto add = [&](std::size_t side, const glm::u16vec3& code, std::uint32_t leaf) {
+      const std::size_t element = side / 2;
+      if (element >= view_of.size() || view_of[element] == kNone) return;
+      const glm::vec3 place = exchange.places.place(code);
+      // Other bits than the side's.
+      if (scattered(place + 1.f) * exchange.lines[element] > lines_wanted) return;
+      found[chunk].push_back({static_cast<std::uint32_t>(2 * view_of[element] + side % 2), {place, leaf}});
+    };
+    for (std::size_t side = chunk * exchange.sides() / kChunks; side < (chunk + 1) * exchange.sides() / kChunks;
+         ++side) {
+      const std::uint32_t leaf = side / 2 < elements.leaf_elements ? elements.leaf[side / 2] : kOther;
+      for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i)
+        add(exchange.sees[i], exchange.seen_at[i], leaf);
+      for (std::uint64_t i = exchange.first_outside[side]; i < exchange.first_outside[side + 1]; ++i)
+        add(side, exchange.open_at[i], kOther);
+    }
+  });
+  std::vector<std::vector<Line>> views(2 * viewed.size());
+  for (const std::vector<Found>& of_chunk : found)
+    for (const Found& one : of_chunk) views[one.view].push_back(one.line);
+  std::vector<std::array<Pairs, kChunks>> parts(count);
+  tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
+    for (std::size_t i = chunk * views.size() / kChunks; i < (chunk + 1) * views.size() / kChunks; ++i) {
+      const std::uint32_t element = viewed[i / 2];
+      parts[kinds[element]][chunk].add(views[i], 1.f / std::sqrt(elements.area[element]));
+    }
+  });
   std::vector<float> shares;
-  for (const Pairs& of_kind : pairs) shares.push_back(static_cast<float>(of_kind.excess()));
+  for (const auto& of_kind : parts) {
+    Pairs pairs;
+    for (const Pairs& part : of_kind) pairs.add(part);
+    shares.push_back(static_cast<float>(pairs.excess()));
+  }
   return shares;
 }
 

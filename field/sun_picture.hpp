@@ -17,7 +17,7 @@ namespace sunfleck {
 
 // How finely a sun's light is sampled.
 struct DirectEffort {
-  float pixels = 128.f;             // of an element of mean area that faces the sun, in the mean [1]
+  float pixels = 256.f;             // of an element of mean area that faces the sun, in the mean [1]
   double most_pixels = 4'194'304.;  // of a picture
 };
 
