@@ -1,8 +1,9 @@
 // The field against Monte Carlo: errors by category, per leaf and in all, and times.
 //   measure_field TREE... [--paths N] [--keep FOLDER] [--csv FILE] [--suns 0,45,70] [--albedos .5,.95] [--single]
-//                 [--periodic] [--no-wood] [--split] [--axes N] [--crossings X] ... | [--cells N]
-// A tree is a species, a file or "crown", of random leaves. --cells judges the field on cells alone, so many
-// along the longest side. --keep keeps Monte Carlo's results.
+//                 [--periodic] [--no-wood] [--split] [--axes N] [--crossings X] ... | [--cells N] | [--others]
+// A tree is a species, a file or "crown", of random leaves. --cells judges the field on cells alone, so many along the
+// longest side; --others what knows no 3-D solution: single scattering, the slab without and with compensation, and the
+// slab's source along lines (DampedLine). --keep keeps Monte Carlo's results.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <optional>
 #include <string>
 
+#include "bench/damped_line.hpp"
 #include "bench/kept_trace.hpp"
 #include "core/csv_field.hpp"
 #include "core/elapsed.hpp"
@@ -28,10 +30,14 @@
 #include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
 #include "render/compare/category_errors.hpp"
+#include "render/leaf_models.hpp"
+#include "render/stand_geometry.hpp"
 
 using namespace sunfleck;
 
 namespace {
+
+constexpr float kAzimuth = 0.5f;  // of the sun [rad]
 
 struct Options {
   std::vector<std::string> trees;
@@ -41,6 +47,7 @@ struct Options {
   std::filesystem::path keep, csv;
   bool single = true, periodic = true, wood = true, split = false;
   std::optional<int> cells;
+  bool others = false;
   FieldEffort effort;
 };
 
@@ -72,6 +79,8 @@ Options optionsOf(int argc, char** argv) {
       options.csv = next();
     else if (word == "--cells")
       options.cells = std::atoi(next());
+    else if (word == "--others")
+      options.others = true;
     else if (word == "--axes")
       options.effort.exchange.axes = std::atoi(next());
     else if (word == "--crossings")
@@ -144,7 +153,7 @@ struct Case {
 // What a method finds in a band.
 struct Answer {
   std::vector<float> irradiance;  // of each leaf, both sides [1]
-  std::vector<float> direct;      // the same of direct light
+  std::vector<float> direct;      // the same of direct light; empty: not told
   int iterations = 0;
   double error_bound = 0., rest = 0.;  // see FieldSolution; light that is lost, of what comes
   double seconds = 0., cpu_seconds = 0.;
@@ -196,11 +205,12 @@ Row judge(const Case& of, std::size_t band, const std::string& method, const Ans
 
 void print(const Row& row) {
   fmt::print(
-      "{:<28.28} {} {:2.0f} {}  w {:5.2f} (noise {:4.2f}) uw {:5.2f} leaf {:5.2f} (noise {:4.2f}) bias {:+5.2f} direct "
+      "{:<28.28} {} {:2.0f} {} {:<11} w {:5.2f} (noise {:4.2f}) uw {:5.2f} leaf {:5.2f} (noise {:4.2f}) bias {:+5.2f} "
+      "direct "
       "{:5.2f} | {:2} iterations bound {:.1e} rest {:+.1e} {:6.1f} ms cpu {:6.1f}\n",
-      row.tree, row.periodic ? "periodic" : "single  ", row.zenith, row.band.name(), row.weighted, row.weighted_noise,
-      row.by_category, row.leaf, row.leaf_noise, row.bias, row.direct, row.iterations, row.error_bound, row.rest,
-      row.milliseconds, row.cpu_milliseconds);
+      row.tree, row.periodic ? "periodic" : "single  ", row.zenith, row.band.name(), row.method, row.weighted,
+      row.weighted_noise, row.by_category, row.leaf, row.leaf_noise, row.bias, row.direct, row.iterations,
+      row.error_bound, row.rest, row.milliseconds, row.cpu_milliseconds);
   std::fflush(stdout);
 }
 
@@ -258,7 +268,7 @@ Case caseOf(const std::string& name, const Options& options, bool periodic, floa
     const glm::vec3 size = leafBounds(mesh).size();
     of.stand.period = glm::vec2(size.x, size.y);
   }
-  of.sun = sunlight(zenith * std::numbers::pi_v<float> / 180.f, 0.5f);
+  of.sun = sunlight(zenith * std::numbers::pi_v<float> / 180.f, kAzimuth);
   std::vector<TraceLight> lights;
   for (const float albedo : options.albedos)
     for (const float share : {0.5f, 0.7f}) {
@@ -306,6 +316,13 @@ std::vector<Row> judgeLines(const Case& of, const FieldEffort& effort) {
   return rows;
 }
 
+// Both sides' irradiance of each leaf.
+std::vector<float> ofLeaves(const Case& of, const FieldElements& elements, const std::vector<float>& sides) {
+  std::vector<float> sums(elements.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = sides[2 * i] + sides[2 * i + 1];
+  return leafMeans(elements, of.mesh->leaf_count, sums);
+}
+
 std::vector<Row> judgeCells(const Case& of, const FieldEffort& effort, int cells) {
   const Elapsed making;
   const FieldElements elements = fieldElements(*of.mesh, effort.elements);
@@ -316,11 +333,6 @@ std::vector<Row> judgeCells(const Case& of, const FieldEffort& effort, int cells
                   std::array{omega});
   const double made = making.seconds();
   const DirectLight direct = directLight(*of.mesh, elements, of.stand.period, of.sun, effort.direct);
-  const auto ofLeaves = [&](const std::vector<float>& sides) {
-    std::vector<float> sums(elements.size());
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = sides[2 * i] + sides[2 * i + 1];
-    return leafMeans(elements, of.mesh->leaf_count, sums);
-  };
   constexpr std::array kDark{0.f};
   std::vector<Row> rows;
   for (std::size_t band = 0; band < of.bands.size(); ++band) {
@@ -330,8 +342,8 @@ std::vector<Row> judgeCells(const Case& of, const FieldEffort& effort, int cells
                                                .entering = field.evenSky(kDark, kDark, {})});
     if (!solution.told.empty()) fmt::print("    {}\n", solution.told);
     print(rows.emplace_back(judge(of, band, fmt::format("cells {}", cells),
-                                  {.irradiance = ofLeaves(solution.irradiance),
-                                   .direct = ofLeaves(direct.irradiance),
+                                  {.irradiance = ofLeaves(of, elements, solution.irradiance),
+                                   .direct = ofLeaves(of, elements, direct.irradiance),
                                    .iterations = solution.iterations,
                                    .error_bound = solution.error_bound,
                                    .rest = solution.balance[0].residual(),
@@ -340,6 +352,42 @@ std::vector<Row> judgeCells(const Case& of, const FieldEffort& effort, int cells
   }
   fmt::print("    {} leaves, {} elements, {} occupied cells, Omega {:.2f}, made in {:.1f} ms\n", of.mesh->leaf_count,
              elements.size(), field.medium().grid.cells.size(), omega, 1e3 * made);
+  return rows;
+}
+
+std::vector<Row> judgeOthers(const Case& of, const FieldEffort& effort) {
+  Scene scene;
+  scene.kinds[0].mesh = of.mesh;
+  scene.stand = of.stand;
+  scene.suns = {Sun{.zenith = of.zenith * std::numbers::pi_v<float> / 180.f, .azimuth = kAzimuth}};
+  StandGeometry stand;
+  stand.update(scene, needsOf(Model::sppg));
+  const LeafGeometry geometry = leafGeometry(scene, stand);
+  const FieldElements elements = fieldElements(*of.mesh, effort.elements);
+  const std::vector<float> direct =
+      ofLeaves(of, elements, directLight(*of.mesh, elements, of.stand.period, of.sun, effort.direct).irradiance);
+  const DampedLine line(*of.mesh, of.stand, of.sun, geometry.depths.front(), geometry.compensation.front(), direct);
+  std::vector<Row> rows;
+  for (std::size_t band = 0; band < of.bands.size(); ++band) {
+    const std::array optics{of.bands[band].leaf()};
+    for (const auto& [name, model] :
+         {std::pair("SS", Model::ss), std::pair("SPP", Model::spp), std::pair("SPPG", Model::sppg)}) {
+      const Elapsed elapsed;
+      std::vector<float> found = leafIrradiance(model, geometry, optics);
+      print(rows.emplace_back(judge(of, band, name,
+                                    {.irradiance = std::move(found),
+                                     .direct = {},
+                                     .seconds = elapsed.seconds(),
+                                     .cpu_seconds = elapsed.cpuSeconds()})));
+    }
+    const Elapsed elapsed;
+    std::vector<float> found = line.irradiance(optics.front());
+    print(rows.emplace_back(judge(of, band, "damped line",
+                                  {.irradiance = std::move(found),
+                                   .direct = direct,
+                                   .seconds = elapsed.seconds(),
+                                   .cpu_seconds = elapsed.cpuSeconds()})));
+  }
   return rows;
 }
 
@@ -355,8 +403,9 @@ int main(int argc, char** argv) {
         if (periodic ? !options.periodic : !options.single) continue;
         for (const float sun : options.suns) {
           const Case of = caseOf(tree, options, periodic, sun);
-          const std::vector<Row> more =
-              options.cells ? judgeCells(of, options.effort, *options.cells) : judgeLines(of, options.effort);
+          const std::vector<Row> more = options.others  ? judgeOthers(of, options.effort)
+                                        : options.cells ? judgeCells(of, options.effort, *options.cells)
+                                                        : judgeLines(of, options.effort);
           rows.insert(rows.end(), more.begin(), more.end());
           if (!options.csv.empty()) writeWhole(options.csv, csvOf(rows));
         }

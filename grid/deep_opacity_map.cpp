@@ -12,8 +12,10 @@
 #include <cassert>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <string>
 #include <vector>
 
+#include "core/available_memory.hpp"
 #include "core/require.hpp"
 #include "grid/detail/scan_conversion.hpp"
 
@@ -191,6 +193,11 @@ DeepOpacityMap::DeepOpacityMap(const TreeMesh& mesh, Direction along, int resolu
   }
   require(counted.back() <= std::numeric_limits<std::uint32_t>::max(), "leaf crossings on the lines of an opacity map",
           counted.back(), "below 2^32: of fewer pixels");
+  // Each is held twice for a while. Few are not worth asking the system.
+  if (const double bytes = 16. * static_cast<double>(counted.back()); bytes > 1e9)
+    require(bytes <= availableMemory(), "memory for the leaf crossings on the lines of an opacity map [byte]", bytes,
+            "at most what there is, " + std::to_string(static_cast<std::uint64_t>(availableMemory())) +
+                ": of fewer leaves one above the other, or of fewer pixels");
   std::array<std::uint32_t, kBands + 1> band_first{};
   std::copy(counted.begin(), counted.end(), band_first.begin());
   const std::size_t pixels = pixelNumber(0, size.y);
