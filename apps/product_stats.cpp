@@ -6,9 +6,9 @@ namespace sunfleck::apps {
 
 std::string statsTable(std::span<const ProductCost> costs) {
   std::string text =
-      fmt::format("{:<28} {:>8} {:>8} {:>9} {:>10} {:>9}\n", "product", "made", "reused", "adjusted", "skipped", "ms");
+      fmt::format("{:<22} {:>8} {:>8} {:>9} {:>10} {:>9}\n", "product", "made", "reused", "adjusted", "skipped", "ms");
   for (const ProductCost& c : costs)
-    text += fmt::format("{:<28} {:>8} {:>8} {:>9} {:>10} {:>9.1f}\n", c.name, c.made, c.reused, c.adjusted, c.skipped,
+    text += fmt::format("{:<22} {:>8} {:>8} {:>9} {:>10} {:>9.1f}\n", c.name, c.made, c.reused, c.adjusted, c.skipped,
                         1e3 * c.seconds);
   return text;
 }

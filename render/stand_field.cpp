@@ -40,11 +40,15 @@ void requireField(const Scene& scene) {
 StandField::StandField(const FieldEffort& effort, const CellFieldEffort& cells) : field_(effort), on_cells_(cells) {}
 
 std::vector<ProductCost> StandField::costs() const {
-  std::vector<ProductCost> costs = field_.costs();
-  for (ProductCost& cost : on_cells_.costs()) {
-    cost.name = "preview: " + cost.name;
-    costs.push_back(std::move(cost));
-  }
+  std::vector<ProductCost> costs;
+  const auto add = [&](const std::string& of, const std::vector<ProductCost>& products) {
+    for (ProductCost cost : products) {
+      cost.name = of + ": " + cost.name;
+      costs.push_back(std::move(cost));
+    }
+  };
+  add("field", field_.costs());
+  add("preview", on_cells_.costs());
   return costs;
 }
 

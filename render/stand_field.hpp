@@ -49,7 +49,7 @@ class StandField {
   std::span<const glm::vec3> ground() const { return ground_; }
 
   const FieldResult& result() const { return *result_; }
-  std::vector<ProductCost> costs() const;  // of the field along lines, then of that on cells, "preview: "
+  std::vector<ProductCost> costs() const;  // of the field along lines, "field: ...", and on cells, "preview: ..."
 
  private:
   // The wood of a kind is lit as the leaves around it.

@@ -391,10 +391,7 @@ std::uint64_t StandGeometry::skyLightRevision(std::size_t tree) const {
 std::vector<ProductCost> StandGeometry::costs() const {
   std::vector<ProductCost> costs = foliage_->costs();
   if (field_)
-    for (ProductCost cost : field_->costs()) {
-      cost.name = "field: " + cost.name;
-      costs.push_back(std::move(cost));
-    }
+    for (ProductCost& cost : field_->costs()) costs.push_back(std::move(cost));
   return costs;
 }
 

@@ -158,14 +158,14 @@ wait preview
 screenshot preview.png
 wait ready
 screenshot field.png
-expect recomputed field:_preview:_cells 1
+expect recomputed preview:_cells 1
 sun 30 0 0.5
 wait preview
 screenshot dim_field.png
 wait ready
 screenshot dim_ready.png
 expect same dim_field.png dim_ready.png
-expect recomputed field:_preview:_solutions 0
+expect recomputed preview:_solutions 0
 sun 50 20
 wait preview
 sun 30 0 1

@@ -236,7 +236,7 @@ TEST(Session, TellsOfTheField) {
   EXPECT_EQ(told[0], "preview on cells");
   EXPECT_TRUE(told[1].starts_with("field: ")) << told[1];
   EXPECT_NE(told[1].find(" iterations, error below 0."), std::string::npos) << told[1];
-  for (const std::string name : {"field: solutions", "field: preview: solutions"}) {
+  for (const std::string name : {"field: solutions", "preview: solutions"}) {
     const auto cost = std::ranges::find(session.lastCosts(), name, &ProductCost::name);
     ASSERT_NE(cost, session.lastCosts().end()) << name;
     EXPECT_EQ(cost->made, 1u) << name;

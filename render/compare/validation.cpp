@@ -24,7 +24,7 @@ ModelResult fieldResult(const Scene& scene, int band, const Progress& progress) 
   ModelResult result{.model = Model::field, .irradiance = leafIrradiance(field.result(), scene, band)};
   const double all = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const ProductCost& cost : field.costs())
-    if (cost.name != "solutions") result.prepare_seconds += cost.seconds;
+    if (cost.name != "field: solutions") result.prepare_seconds += cost.seconds;
   result.shade_seconds = all - result.prepare_seconds;
   return result;
 }
