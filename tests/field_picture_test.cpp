@@ -94,7 +94,8 @@ TEST(F26_FieldPicture, ShowsTheFieldOfEachLeafAndSide) {
 }
 
 // (F31) Check what the ground shows of the light that trees scatter, which rises evenly from cell to cell here: as much
-// between their middles as at them; beyond the cells none, and none by other models.
+// between their middles as at them; over the outermost two cells it fades, beyond there is none, and none by other
+// models.
 TEST(F31_FieldPicture, ShowsTheLightOnTheGround) {
   Woods woods;
   woods.scene.sky = {};
@@ -130,7 +131,7 @@ TEST(F31_FieldPicture, ShowsTheLightOnTheGround) {
       if (least < -0.01f) {
         ++beyond;
         EXPECT_EQ(value(image, x, y, "multiple.R"), 0.f);
-      } else if (least > 0.51f) {  // nearer to the border it stays as at the outermost middles
+      } else if (least > 2.01f) {
         ++within;
         const glm::vec3 light = coverage * woods.scene.ground_albedo * expected(place) / std::numbers::pi_v<float>;
         // Places of some 10 m are told to 1e-5 of a cell; slopes are up to a fifth of the value.
