@@ -20,6 +20,7 @@
 #include "render/gl/opacity_map_store.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
+#include "render/stand_field.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -35,7 +36,7 @@ struct RenderOptions {
   int samples = 4;
   float detail = 0.f;
   std::vector<std::string> layers;
-  bool stats = false;
+  bool stats = false, preview = false;
   std::string maps = "auto", visibility = "auto";
 };
 
@@ -64,6 +65,11 @@ struct Drawn {
   bool maps_by_card, visible_by_rays;
   double prepare_seconds, shade_seconds;
   std::vector<ProductCost> costs;
+  struct Field {
+    int iterations;
+    double error_bound;
+  };
+  std::optional<Field> field;
 };
 
 Drawn drawn(const Scene& scene, gl::PictureEffort picture, const RenderOptions& options, bool quiet) {
@@ -88,8 +94,12 @@ Drawn drawn(const Scene& scene, gl::PictureEffort picture, const RenderOptions& 
   const auto seconds = [start = std::chrono::steady_clock::now()] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  stand.update(scene, needsOf(picture.model), treesInPicture(scene, cameraOf(scene)),
-               terminalProgress("opacity maps and cells", quiet));
+  GeometryNeeds needs = needsOf(picture.model);
+  needs.preview = options.preview;
+  stand.update(scene, needs, treesInPicture(scene, cameraOf(scene)), terminalProgress("opacity maps and cells", quiet),
+               terminalProgress("light field", quiet));
+  if (const StandField* field = stand.field())
+    drawn.field = {.iterations = field->result().iterations, .error_bound = field->result().error_bound};
   drawn.prepare_seconds = seconds();
   drawn.costs = stand.costs();
 
@@ -130,6 +140,8 @@ std::vector<std::string> layerNames() {
 
 int runRender(const RenderOptions& options, const RunOptions& run) {
   requirePictureName(options.output);
+  if (options.preview && modelNamed(options.model) != Model::field)
+    throw InvalidInput("--preview with --model " + options.model + ": must be with --model field");
   const gl::PictureEffort effort{.model = *modelNamed(options.model),
                                  .samples = options.samples,
                                  .piece_pixels = options.detail,
@@ -160,12 +172,20 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
                                 {"visibility", visibility},
                                 {"prepare_seconds", result.prepare_seconds},
                                 {"shade_seconds", result.shade_seconds}};
+    if (result.field)
+      json["field"] = {{"by", options.preview ? "cells" : "lines"},
+                       {"iterations", result.field->iterations},
+                       {"error_bound", result.field->error_bound}};
     if (options.stats) json["products"] = statsJson(result.costs);
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
   fmt::print("wrote {}: {} x {}, {}, {:.0f} ms to prepare, {:.0f} ms to draw\n", options.output, result.image.width,
              result.image.height, options.model, 1e3 * result.prepare_seconds, 1e3 * result.shade_seconds);
+  if (result.field)
+    fmt::print("light field {}: {} iterations, error of iteration below {:.2g} %\n",
+               options.preview ? "on cells, a preview" : "along lines", result.field->iterations,
+               100. * result.field->error_bound);
   if (options.stats) {
     fmt::print("maps by the {}, what is seen by {}\n", result.maps_by_card ? "graphics card" : "processor",
                result.visible_by_rays ? "rays" : "OpenGL");
@@ -191,6 +211,10 @@ void addRender(CLI::App& app, RunOptions& options, int& status) {
       ->check([](const std::string& name) {
         return modelNamed(name) ? std::string() : "model \"" + name + "\": must be one of " + modelNames();
       });
+  command->add_flag(
+      "--preview", render->preview,
+      "With --model field: solve it on the cells of the trees alone, as view does until the field is there; "
+      "quicker, and some per cent off");
   addDisplayOptions(*command, render->display);
   command->add_option("--map", render->effort.light_resolution, "Pixels along the light's opacity map (default 1024)")
       ->transform(wholeNumberIn(1., 4096., "a whole number, 1 to 4096"));

@@ -132,8 +132,10 @@ std::vector<ReportPicture> makePictures(const ValidateOptions& options, const Ru
 
 // Pictures are worth having, but the figures do not hang on them: without OpenGL the report goes without.
 std::vector<ReportPicture> picturesIfPossible(const ValidateOptions& options, const RunOptions& run, const Scene& scene,
-                                              const StandGeometry& stand) {
+                                              StandGeometry& stand) {
   try {
+    stand.update(scene, {.field = fieldFits(scene)}, std::nullopt,
+                 terminalProgress("opacity maps and cells", run.quiet), terminalProgress("light field", run.quiet));
     return makePictures(options, run, scene, stand);
   } catch (const InvalidInput&) {
     throw;
@@ -157,14 +159,14 @@ int runValidate(ValidateOptions& options, const RunOptions& run) {
   for (const Scene& scene : scenes) {
     if (interrupted()) break;
     stand.update(scene, {}, std::nullopt, terminalProgress("opacity maps and cells", run.quiet));
-    validations.push_back(
-        validate(scene, stand, options.effort, terminalProgress("Monte Carlo, " + kindOf(scene), run.quiet)));
+    validations.push_back(validate(scene, stand, options.effort,
+                                   terminalProgress("Monte Carlo, " + kindOf(scene), run.quiet),
+                                   terminalProgress("light field, " + kindOf(scene), run.quiet)));
     const bool plain = scene.kinds.size() == 1 && std::ranges::all_of(scene.stand.trees, [](const Placement& tree) {
                          return tree.rotation == 0.f;
                        });
     const bool one_sun = traceLightsOfSuns(scene, {options.effort.band}).size() == 1;  // as the tracer's pictures have
     if (plain && one_sun && pictures.empty() && !options.no_pictures && !interrupted()) {
-      stand.update(scene, {.field = fieldFits(scene)});
       pictures = picturesIfPossible(options, run, scene, stand);
     }
   }

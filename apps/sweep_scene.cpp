@@ -174,9 +174,14 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
     for (const TreeKind& kind : sceneOf(task, optics).kinds)
       leaf.push_back(kind.leaf[static_cast<std::size_t>(optics.band)]);
     for (const Model model : sweep_.models) {
-      const std::vector<float> irradiance = model == Model::field
-                                                ? fieldIrradiance(sceneOf(task, optics), optics.band)
-                                                : leafIrradiance(model, geometry, leaf, exactPowerTable);
+      std::vector<float> irradiance;
+      try {
+        irradiance = model == Model::field ? fieldIrradiance(sceneOf(task, optics), optics.band, progress)
+                                           : leafIrradiance(model, geometry, leaf, exactPowerTable);
+      } catch (const std::runtime_error&) {
+        if (!goOn(progress, 1.)) return std::nullopt;
+        throw;
+      }
       const ModelErrors errors = modelErrors(irradiance, result.leaf_irradiance, of_depths);
       rows.push_back(fmt::format("{},{},{},{},{},{}", empty, noise, orNothing(errors.rms_category),
                                  orNothing(errors.rms_weighted), orNothing(errors.rms_leaf), orNothing(errors.bias)));
@@ -185,9 +190,9 @@ std::optional<std::vector<std::string>> SweepScene::figures(const SweepTask& tas
   return rows;
 }
 
-std::vector<float> SweepScene::fieldIrradiance(Scene scene, int band) {
+std::vector<float> SweepScene::fieldIrradiance(Scene scene, int band, const Progress& progress) {
   for (std::size_t kind = 0; kind < scene.kinds.size(); ++kind) scene.kinds[kind].mesh = field_meshes_[kind];
-  field_.update(scene);
+  field_.update(scene, FieldBy::lines, [&](double) { return goOn(progress, 1.); });
   return leafIrradiance(field_.result(), scene, band);
 }
 

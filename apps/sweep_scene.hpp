@@ -43,7 +43,7 @@ class SweepScene {
   Scene sceneOf(const SweepTask& task, const SweepOptics& optics) const;
   ForwardJob jobOf(const SweepTask& task) const;
   std::uint64_t pathsPerUnit() const;
-  std::vector<float> fieldIrradiance(Scene scene, int band);
+  std::vector<float> fieldIrradiance(Scene scene, int band, const Progress& progress);
 
   const SweepFile& sweep_;
   std::string name_;

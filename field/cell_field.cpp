@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/require.hpp"
+#include "field/ground_light.hpp"
 #include "sky/sky_shares.hpp"
 
 namespace sunfleck {
@@ -91,7 +92,7 @@ const FieldResult& CellField::solve(const FieldLighting& lighting, const Progres
     graph_.bring(solution_product_, std::span(sources).subspan(i, 1),
                  [&](std::size_t source) { makeSolution(source, partOf(progress, from(i), from(i + 1))); });
   }
-  compose();
+  result_ = fieldResult(elements_, parts());
   return result_;
 }
 
@@ -186,11 +187,14 @@ void CellField::makeSolution(std::size_t source, const Progress& progress) {
                .iterations = solution.iterations,
                .error_bound = solution.error_bound,
                .converged = solution.told.empty()};
-    for (std::size_t i = 0; i < elements; ++i)
-      for (std::size_t side = 0; side < 2; ++side) {
-        const std::size_t at = (2 * in_cells_[i] + side) * count + found[band];
-        of_band.scattered[2 * i + side] = std::max(solution.irradiance[at] - light.direct[at], 0.f);
-      }
+    const auto at = [&](std::size_t i, std::size_t side) { return (2 * in_cells_[i] + side) * count + found[band]; };
+    for (std::size_t i = 0; i < elements_.elements.leaf_elements; ++i)
+      for (std::size_t side = 0; side < 2; ++side)
+        of_band.scattered[2 * i + side] = std::max(solution.irradiance[at(i, side)] - light.direct[at(i, side)], 0.f);
+    // Of wood all is told in front, direct light of both sides too.
+    for (std::size_t i = elements_.elements.leaf_elements; i < elements; ++i)
+      of_band.scattered[2 * i] =
+          std::max(solution.irradiance[at(i, 0)] - light.direct[at(i, 0)] - light.direct[at(i, 1)], 0.f);
     const GridBalance& balance = solution.balance[found[band]];
     of_band.balance = {.in = balance.incoming,
                        .absorbed_leaves = balance.absorbed_leaves * balance.incoming,
@@ -201,7 +205,7 @@ void CellField::makeSolution(std::size_t source, const Progress& progress) {
   }
 }
 
-void CellField::compose() {
+std::vector<FieldPart> CellField::parts() const {
   std::vector<FieldPart> parts;
   const auto add = [&](std::size_t source, const glm::vec3& scale) {
     FieldPart& part = parts.emplace_back();
@@ -211,7 +215,17 @@ void CellField::compose() {
   };
   for (std::size_t sun = 0; sun < lighting_.suns.size(); ++sun) add(sun, lighting_.suns[sun].irradiance);
   if (lighting_.sky) add(kSky, glm::vec3(1.f));
-  result_ = fieldResult(elements_, parts);
+  return parts;
+}
+
+// (F31)
+std::vector<glm::vec3> CellField::groundLight(const GroundGrid& grid) const {
+  const std::vector<glm::vec3> sent = sentRadiance(elements_, parts(), lighting_.kinds);
+  std::vector<glm::vec3> radiance(sent.size());
+  for (std::size_t i = 0; i < in_cells_.size(); ++i)
+    for (std::size_t side = 0; side < 2; ++side)
+      radiance[2 * in_cells_[i] + side] = sent[2 * i + (i < elements_.elements.leaf_elements ? side : 0)];
+  return sunfleck::groundLight(grid, cells_->medium(), clumping_, radiance);
 }
 
 }  // namespace sunfleck

@@ -18,6 +18,7 @@
 #include "field/field_result.hpp"
 #include "field/grid_field.hpp"
 #include "field/stand_elements.hpp"
+#include "grid/foliage_stand.hpp"
 #include "grid/product_graph.hpp"
 
 namespace sunfleck {
@@ -47,6 +48,9 @@ class CellField {
   // downward in the balance, and with a period the suns' light on the ground as even over it.
   const FieldResult& solve(const FieldLighting& lighting, const Progress& progress = {});
 
+  // (F31) As LeafField::groundLight(), on cells.
+  std::vector<glm::vec3> groundLight(const GroundGrid& grid) const;
+
   std::vector<ProductCost> costs() const { return graph_.costs(); }  // clumping, cells, direct light, solutions
 
  private:
@@ -55,7 +59,7 @@ class CellField {
   void makeCells();
   void makeSolution(std::size_t source, const Progress& progress);
   EnteringLight entering(std::size_t source, std::span<const std::size_t> bands) const;
-  void compose();
+  std::vector<FieldPart> parts() const;
 
   CellFieldEffort effort_;
   std::vector<std::shared_ptr<const TreeMesh>> meshes_;

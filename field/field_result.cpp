@@ -1,8 +1,39 @@
 #include "field/field_result.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <numbers>
 
 namespace sunfleck {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+}  // namespace
+
+// (F4)
+std::vector<glm::vec3> sentRadiance(const StandElements& stand, std::span<const FieldPart> parts,
+                                    std::span<const FieldKind> kinds) {
+  std::vector<glm::vec3> radiance(2 * stand.elements.size());
+  tbb::parallel_for(std::size_t{0}, stand.elements.size(), [&](std::size_t i) {
+    const FieldKind& kind = kinds[stand.kinds[i] / 2];
+    const bool wood = stand.kinds[i] % 2 == 1;
+    for (int band = 0; band < kBands; ++band) {
+      const auto b = static_cast<std::size_t>(band);
+      std::array<float, 2> light{};
+      for (const FieldPart& part : parts)
+        for (std::size_t side = 0; side < 2; ++side)
+          light[side] += part.scale[band] * (part.solutions[b]->scattered[2 * i + side] +
+                                             (part.direct ? part.direct->irradiance[2 * i + side] : 0.f));
+      const float reflectance = (wood ? kind.wood_reflectance[band] : kind.leaf[b].reflectance) / kPi,
+                  transmittance = wood ? 0.f : kind.leaf[b].transmittance / kPi;
+      for (std::size_t side = 0; side < 2; ++side)
+        radiance[2 * i + side][band] = reflectance * light[side] + transmittance * light[1 - side];
+    }
+  });
+  return radiance;
+}
 
 FieldResult fieldResult(const StandElements& stand, std::span<const FieldPart> parts) {
   FieldResult result;

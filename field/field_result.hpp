@@ -7,6 +7,7 @@
 
 #include "core/leaf_optics.hpp"
 #include "field/direct_light.hpp"
+#include "field/field_lighting.hpp"
 #include "field/field_solver.hpp"
 #include "field/stand_elements.hpp"
 
@@ -36,6 +37,10 @@ struct FieldPart {
   const DirectLight* direct = nullptr;  // of a sun, for irradiance 1
   std::array<const FieldSolution*, kBands> solutions{};
 };
+// (F4) What each element's front and back send out, all light together, per band [unit of the light / sr].
+//   kinds  of trees
+std::vector<glm::vec3> sentRadiance(const StandElements& stand, std::span<const FieldPart> parts,
+                                    std::span<const FieldKind> kinds);
 // The light of each leaf by all parts together; a leaf of several elements has their mean by area.
 FieldResult fieldResult(const StandElements& stand, std::span<const FieldPart> parts);
 

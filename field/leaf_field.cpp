@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/require.hpp"
+#include "field/ground_light.hpp"
 #include "field/near_return.hpp"
 #include "sky/sky_shares.hpp"
 
@@ -107,7 +108,7 @@ const FieldResult& LeafField::solve(const FieldLighting& lighting, const Progres
   requireGoOn(progress, kDirect);
   if (!stale.empty()) makeSolutions(stale, partOf(progress, kDirect, 1.));
   graph_.bring(solution_product_, sources, [](std::size_t) {});
-  compose();
+  result_ = fieldResult(elements_, parts());
   return result_;
 }
 
@@ -176,7 +177,7 @@ void LeafField::makeSolutions(std::span<const std::size_t> stale, const Progress
   }
 }
 
-void LeafField::compose() {
+std::vector<FieldPart> LeafField::parts() const {
   std::vector<FieldPart> parts;
   const auto add = [&](std::size_t source, const glm::vec3& scale) {
     FieldPart& part = parts.emplace_back();
@@ -186,7 +187,13 @@ void LeafField::compose() {
   };
   for (std::size_t sun = 0; sun < lighting_.suns.size(); ++sun) add(sun, lighting_.suns[sun].irradiance);
   if (lighting_.sky) add(kSky, glm::vec3(1.f));
-  result_ = fieldResult(elements_, parts);
+  return parts;
+}
+
+// (F31)
+std::vector<glm::vec3> LeafField::groundLight(const GroundGrid& grid) const {
+  return sunfleck::groundLight(grid, stand_.period.has_value(), elements_, exchange_,
+                               sentRadiance(elements_, parts(), lighting_.kinds));
 }
 
 }  // namespace sunfleck

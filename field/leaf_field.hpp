@@ -17,6 +17,7 @@
 #include "field/line_exchange.hpp"
 #include "field/lit_places.hpp"
 #include "field/stand_elements.hpp"
+#include "grid/foliage_stand.hpp"
 #include "grid/product_graph.hpp"
 
 namespace sunfleck {
@@ -52,6 +53,9 @@ class LeafField {
   bool upToDate(std::span<const std::shared_ptr<const TreeMesh>> kinds, const Stand& stand,
                 const FieldLighting& lighting) const;
 
+  // (F31) Irradiance of the ground's cells by what leaves and wood send down, per band, as last solved.
+  std::vector<glm::vec3> groundLight(const GroundGrid& grid) const;
+
   const FieldElements& elements() const { return elements_.elements; }                  // of all trees
   std::size_t firstLeaf(std::size_t tree) const { return elements_.first_leaf[tree]; }  // in elements().leaf
   std::vector<ProductCost> costs() const {
@@ -67,7 +71,7 @@ class LeafField {
   bool sameOptics(const FieldLighting& lighting) const;
   bool sameDirection(const FieldLighting& lighting, std::size_t sun) const;
   void makeSolutions(std::span<const std::size_t> stale, const Progress& progress);
-  void compose();
+  std::vector<FieldPart> parts() const;
 
   FieldEffort effort_;
   std::vector<std::shared_ptr<const TreeMesh>> meshes_;

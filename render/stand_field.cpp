@@ -14,17 +14,6 @@ namespace {
 constexpr int kWoodCells = 16;  // along the longest side of a tree
 constexpr std::size_t kMostFieldLeaves = 2'000'000;
 
-FieldLighting lightingOf(const Scene& scene) {
-  const SunAndSky shining = sunAndSky(scene);
-  FieldLighting lighting{.suns = {}, .sky = shining.sky, .kinds = {}, .ground_albedo = scene.ground_albedo};
-  for (std::size_t i = 0; i < scene.suns.size(); ++i)
-    if (shining.suns[i] != glm::vec3(0.f))
-      lighting.suns.push_back({.along = scene.suns[i].light(), .irradiance = shining.suns[i]});
-  for (const TreeKind& kind : scene.kinds)
-    lighting.kinds.push_back({.leaf = kind.leaf, .wood_reflectance = kind.wood_reflectance});
-  return lighting;
-}
-
 std::vector<std::shared_ptr<const TreeMesh>> meshesOf(const Scene& scene) {
   std::vector<std::shared_ptr<const TreeMesh>> meshes;
   for (const TreeKind& kind : scene.kinds) meshes.push_back(kind.mesh);
@@ -51,11 +40,15 @@ void requireField(const Scene& scene) {
 StandField::StandField(const FieldEffort& effort, const CellFieldEffort& cells) : field_(effort), on_cells_(cells) {}
 
 std::vector<ProductCost> StandField::costs() const {
-  std::vector<ProductCost> costs = field_.costs();
-  for (ProductCost& cost : on_cells_.costs()) {
-    cost.name = "preview: " + cost.name;
-    costs.push_back(std::move(cost));
-  }
+  std::vector<ProductCost> costs;
+  const auto add = [&](const std::string& of, const std::vector<ProductCost>& products) {
+    for (ProductCost cost : products) {
+      cost.name = of + ": " + cost.name;
+      costs.push_back(std::move(cost));
+    }
+  };
+  add("field", field_.costs());
+  add("preview", on_cells_.costs());
   return costs;
 }
 
@@ -90,18 +83,40 @@ StandField::Kind StandField::kindOf(const std::shared_ptr<const TreeMesh>& mesh)
   return kind;
 }
 
+// A sky that is as before stays the same map, of which no light is computed again.
+FieldLighting StandField::lightingOf(const Scene& scene) const {
+  const SunAndSky shining = sunAndSky(scene);
+  const bool same_sky = sky_map_ && shining.sky && scene.sky == sky_ &&
+                        (scene.sky.kind != SceneSky::Kind::preetham ||
+                         (scene.sun().zenith == sky_sun_.zenith && scene.sun().azimuth == sky_sun_.azimuth));
+  FieldLighting lighting{
+      .suns = {}, .sky = same_sky ? sky_map_ : shining.sky, .kinds = {}, .ground_albedo = scene.ground_albedo};
+  for (std::size_t i = 0; i < scene.suns.size(); ++i)
+    if (shining.suns[i] != glm::vec3(0.f))
+      lighting.suns.push_back({.along = scene.suns[i].light(), .irradiance = shining.suns[i]});
+  for (const TreeKind& kind : scene.kinds)
+    lighting.kinds.push_back({.leaf = kind.leaf, .wood_reflectance = kind.wood_reflectance});
+  return lighting;
+}
+
 bool StandField::upToDate(const Scene& scene) const {
   return field_.upToDate(meshesOf(scene), scene.stand, lightingOf(scene));
 }
 
-void StandField::update(const Scene& scene, FieldBy by, const Progress& progress) {
+void StandField::update(const Scene& scene, FieldBy by, const Progress& progress, const GroundGrid& ground) {
   requireField(scene);
   const std::vector<std::shared_ptr<const TreeMesh>> meshes = meshesOf(scene);
   result_ = nullptr;
   by_ = by;
+  const FieldLighting lighting = lightingOf(scene);
+  sky_ = scene.sky;
+  sky_sun_ = scene.sun();
+  sky_map_ = lighting.sky;
   const auto solved = [&](auto& field) {
     field.setStand(meshes, scene.stand);
-    return &field.solve(lightingOf(scene), progress);
+    const FieldResult& result = field.solve(lighting, progress);
+    ground_ = ground.size.x > 0 ? field.groundLight(ground) : std::vector<glm::vec3>();
+    return &result;
   };
   result_ = by == FieldBy::lines ? solved(field_) : solved(on_cells_);
   kinds_.resize(meshes.size());

@@ -32,7 +32,9 @@ class StandField {
 
   // Brings it up to date for the scene. Throws InvalidInput as LeafField or CellField, requireField() and sunAndSky()
   // do, and std::runtime_error("interrupted") when `progress` ends it: then nothing is told until the next update.
-  void update(const Scene& scene, FieldBy by = FieldBy::lines, const Progress& progress = {});
+  //   ground  cells in which its light is told; none: it is not
+  void update(const Scene& scene, FieldBy by = FieldBy::lines, const Progress& progress = {},
+              const GroundGrid& ground = {});
   // Whether an update along lines would compute no product anew.
   bool upToDate(const Scene& scene) const;
   FieldBy by() const { return by_; }  // what is told
@@ -43,9 +45,11 @@ class StandField {
   // another.
   std::span<const glm::vec3> sides(std::size_t tree) const { return sides_[tree]; }
   std::uint64_t revision() const { return revision_; }
+  // (F31) Irradiance of each cell of the ground by what leaves and wood send down, per band [1].
+  std::span<const glm::vec3> ground() const { return ground_; }
 
   const FieldResult& result() const { return *result_; }
-  std::vector<ProductCost> costs() const;  // of the field along lines, then of that on cells, "preview: "
+  std::vector<ProductCost> costs() const;  // of the field along lines, "field: ...", and on cells, "preview: ..."
 
  private:
   // The wood of a kind is lit as the leaves around it.
@@ -55,13 +59,18 @@ class StandField {
     std::vector<std::vector<std::uint32_t>> leaves_around;  // of each place beyond the leaves
   };
   static Kind kindOf(const std::shared_ptr<const TreeMesh>& mesh);
+  FieldLighting lightingOf(const Scene& scene) const;
 
+  SceneSky sky_;  // that sky_map_ was made of, with the sun that lights it
+  Sun sky_sun_;
+  std::shared_ptr<const SkyMap> sky_map_;
   LeafField field_;
   CellField on_cells_;
   FieldBy by_ = FieldBy::lines;
   const FieldResult* result_ = nullptr;
   std::vector<Kind> kinds_;
   std::vector<std::vector<glm::vec3>> sides_;
+  std::vector<glm::vec3> ground_;
   std::uint64_t revision_ = 0;
 };
 

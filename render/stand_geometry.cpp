@@ -361,7 +361,8 @@ void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
   updateEnvironment(instances, needs, progress);
   if (!needs.field) return;
   if (!field_) field_ = std::make_unique<StandField>();
-  field_->update(scene, needs.preview ? FieldBy::cells : FieldBy::lines, field_progress);
+  field_->update(scene, needs.preview ? FieldBy::cells : FieldBy::lines, field_progress,
+                 scene.ground_albedo == glm::vec3(0.f) ? GroundGrid{} : foliage_->ground());
   field_told_ = true;
 }
 
@@ -390,10 +391,7 @@ std::uint64_t StandGeometry::skyLightRevision(std::size_t tree) const {
 std::vector<ProductCost> StandGeometry::costs() const {
   std::vector<ProductCost> costs = foliage_->costs();
   if (field_)
-    for (ProductCost cost : field_->costs()) {
-      cost.name = "field: " + cost.name;
-      costs.push_back(std::move(cost));
-    }
+    for (ProductCost& cost : field_->costs()) costs.push_back(std::move(cost));
   return costs;
 }
 

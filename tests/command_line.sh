@@ -73,6 +73,7 @@ refuses "nowhere" voxelize leaf.obj -o nowhere/x.vdb
 refuses "nowhere" render leaf.obj -o nowhere/x.png
 refuses "folder" plant leaf.obj -o folder
 refuses ".jpg" render leaf.obj -o x.jpg
+refuses "--preview with --model sppg" render leaf.obj -o x.png --preview
 refuses "empty.vdb" voxelize empty.vdb
 refuses "garbage.vdb" voxelize garbage.vdb
 refuses "missing.vdb" voxelize missing.vdb
@@ -548,6 +549,16 @@ for delay in 0.1 0.3 0.6 1 2; do
   timeout --preserve-status -s INT $delay "$program" validate maple --no-pictures -o interrupted >/dev/null 2>stderr.txt
   status=$?
   case $status in 0 | 1 | 130) ;; *) fail "validate, interrupted after $delay s: status $status: $(head -c 400 stderr.txt)" ;; esac
+done
+for delay in 0.5 1 2; do
+  rm -f cut.png
+  timeout --preserve-status -s INT $delay "$program" render cherry16 --model field --size 64 48 -o cut.png >/dev/null 2>stderr.txt
+  status=$?
+  case $status in
+    0) [ -s cut.png ] || fail "render of the field: no picture" ;;
+    1 | 130) [ -z "$(ls -A | grep 'cut.*png')" ] || fail "render of the field, interrupted after $delay s: left something behind" ;;
+    *) fail "render of the field, interrupted after $delay s: status $status: $(head -c 400 stderr.txt)" ;;
+  esac
 done
 # What is interrupted leaves no empty folder.
 set -m  # or what runs behind does not hear of Ctrl-C

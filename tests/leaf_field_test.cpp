@@ -277,6 +277,32 @@ TEST(F4_LeafField, ComputesWhatChanged) {
   EXPECT_EQ(made(), (std::vector<std::size_t>{1, 1, 2, 2, 3}));
 }
 
+// Check that what elements send down comes to the ground: of a stand that repeats all that the ground absorbs but the
+// sun's light, to the noise of the lines' areas, by which that is told; of one alone what leaves it downward, but for
+// what lands beyond the cells.
+TEST(F31_GroundLight, HasWhatLeavesDownward) {
+  const auto mesh = smallTree();
+  const Direction sun = sunlight(0.6f, 0.2f);
+  const FieldElements elements = fieldElements(*mesh);
+  for (const auto& period : {std::optional<glm::vec2>(), kPeriod}) {
+    LeafField field = fieldOf(mesh, {.period = period});
+    const FieldResult& result = field.solve(sunOn(0.4f, 0.5f, sun));
+    const glm::vec2 extent = period.value_or(glm::vec2(100.f));
+    const GroundGrid grid{
+        .low = -0.5f * extent, .height = -1.f, .cell_size = extent / glm::vec2(8.f, 5.f), .size = {8, 5}};
+    const std::vector<glm::vec3> light = field.groundLight(grid);
+    ASSERT_EQ(light.size(), 40u);
+    glm::dvec3 sum(0.);
+    for (const glm::vec3& value : light) sum += glm::dvec3(value) * double{grid.cell_size.x * grid.cell_size.y};
+    const double expected =
+        period ? result.balance[0].absorbed_ground - directLight(*mesh, elements, period, sun).ground_power
+               : result.balance[0].out_down;
+    EXPECT_LT(sum.x, 1.02 * expected);
+    EXPECT_GT(sum.x, (period ? 0.98 : 0.9) * expected);
+    EXPECT_EQ(sum.x, sum.y);
+  }
+}
+
 // Check that threads and the order of the trees change nothing: the former not a bit, the latter only how sums round.
 TEST(F4_LeafField, IsTheSameForThreadsAndOrder) {
   const auto mesh = smallTree();
@@ -295,6 +321,44 @@ TEST(F4_LeafField, IsTheSameForThreadsAndOrder) {
       EXPECT_EQ(std::memcmp(&threaded[tree][i], &alone[tree][i], sizeof(LeafLight)), 0);
       EXPECT_NEAR(bothSides(threaded[tree][i].scattered[0]), bothSides(turned[1 - tree][i].scattered[0]), 1e-4);
     }
+}
+
+// Check that what is ended, wherever that is, tells so and has told how far it was, and comes to the same bits when it
+// is asked again.
+TEST(F4_LeafField, EndsWhenItIsTold) {
+  const auto mesh = smallTree();
+  FieldLighting lighting = sunOn(0.5f, 0.45f, sunlight(0.6f, 0.2f));
+  lighting.sky = std::make_shared<SkyMap>(uniformSky(glm::dvec3(0.2)));
+  LeafField whole = fieldOf(mesh), field = fieldOf(mesh);
+  const auto expected = whole.solve(lighting).trees;
+  EXPECT_FALSE(field.upToDate(std::array{mesh}, {}, lighting));
+  int stops = 0;
+  for (bool ended = false; !ended; ++stops) {
+    int calls = 0;
+    double before = 0.;
+    const auto progress = [&](double done) {
+      EXPECT_GE(done, before);
+      EXPECT_LE(done, 1.);
+      before = done;
+      return calls++ < stops;
+    };
+    try {
+      const auto found = field.solve(lighting, progress).trees;
+      EXPECT_EQ(std::memcmp(found[0].data(), expected[0].data(), found[0].size() * sizeof(LeafLight)), 0);
+      ended = true;
+    } catch (const std::runtime_error& interrupted) {
+      EXPECT_STREQ(interrupted.what(), "interrupted");
+      EXPECT_FALSE(field.upToDate(std::array{mesh}, {}, lighting));
+    }
+    ASSERT_LT(stops, 1000);
+  }
+  EXPECT_GT(stops, 64);  // axes of lines
+  EXPECT_TRUE(field.upToDate(std::array{mesh}, {}, lighting));
+  lighting.suns[0].irradiance *= 0.5f;
+  EXPECT_TRUE(field.upToDate(std::array{mesh}, {}, lighting));
+  lighting.suns[0].along = sunlight(0.7f, 0.2f);
+  EXPECT_FALSE(field.upToDate(std::array{mesh}, {}, lighting));
+  EXPECT_FALSE(field.upToDate(std::array{mesh}, {.period = kPeriod}, lighting));
 }
 
 // Check that what cannot be computed is said in one line before work begins.

@@ -12,91 +12,18 @@
 #include <numbers>
 #include <set>
 
-#include "plants/random_leaves.hpp"
-#include "render/compare/exact_powers.hpp"
-#include "render/gl/stand_picture.hpp"
 #include "render/gl/too_large.hpp"
 #include "render/gl/volume_texture.hpp"
 #include "render/shading/fragment_shading.hpp"
 #include "sky/sky_models.hpp"
+#include "tests/drawn_woods.hpp"
 
 namespace {
 
 using namespace sunfleck;
+using namespace sunfleck::woods;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-// A radiance is a handful of float operations away from its closed form; llvmpipe's exponentials add up to 2e-6.
-constexpr float kShading = 4e-6f;
-
-// A scene of two kinds of crowns, with their products.
-struct Woods {
-  Scene scene;
-  StandGeometry geometry{{.light_resolution = 64, .sample_resolution = 64, .cells = 8}};
-
-  explicit Woods(std::size_t trees = 5) {
-    const auto kind = [](std::uint64_t seed, int leaves) {
-      TreeKind of;
-      RandomCrown crown;
-      crown.leaves = leaves;
-      crown.leaf_side = 0.15f;
-      of.mesh = std::make_shared<TreeMesh>(randomCrown(crown, seed));
-      return of;
-    };
-    scene.kinds = {kind(1, 800), kind(2, 300)};
-    scene.kinds[1].leaf = {LeafOptics{0.1f, 0.1f}, LeafOptics{0.4f, 0.3f}, LeafOptics{0.2f, 0.1f}};
-    scene.stand.trees.clear();
-    for (std::size_t i = 0; i < trees; ++i)
-      scene.stand.trees.push_back(
-          {.position = {3.2f * static_cast<float>(i % 3), 3.4f * static_cast<float>(i / 3), 0.f},
-           .kind = static_cast<std::uint32_t>(i % 2)});
-    scene.ground_albedo = glm::vec3(0.2f, 0.15f, 0.1f);
-    scene.suns = {{.zenith = 0.5f, .azimuth = 0.3f},
-                  {.zenith = 0.9f, .azimuth = 3.f, .irradiance = {0.2f, 0.3f, 0.4f}}};
-    scene.sky.kind = SceneSky::Kind::uniform;
-    scene.sky.irradiance = glm::dvec3(0.1, 0.2, 0.3);
-  }
-  gl::DrawnStand stand() {
-    geometry.update(scene);
-    return gl::drawnStand(scene, geometry);
-  }
-  Camera camera(int size = 96) const {
-    Camera from = kOverview;
-    from.elevation = 0.6f;
-    from.width = from.height = size;
-    return showingAll(scene, from);
-  }
-};
-
-Camera inPerspective(Camera camera) {
-  camera.field_of_view = 0.8f;
-  return camera;
-}
-
-// Draws with a context of its own, which must have had nothing to say.
-class Drawing {
- public:
-  explicit Drawing(const gl::DrawnStand& stand) { renderer.update(stand); }
-  ~Drawing() {
-    EXPECT_NO_THROW(context.requireNoError("drawing"));
-    EXPECT_EQ(context.messages(), 0u);
-  }
-  Image picture(const Camera& camera, const gl::PictureEffort& effort = {}) {
-    return gl::standPicture(context, renderer, camera, effort);
-  }
-  gl::Context context;
-  gl::StandRenderer renderer{context, exactPowerTable};
-};
-
-const std::vector<gl::Layer> kAll(gl::kLayersBesideTotal.begin(), gl::kLayersBesideTotal.end());
-
-std::size_t channel(const Image& image, const std::string& name) {
-  const auto found = std::ranges::find(image.channels, name);
-  EXPECT_NE(found, image.channels.end()) << name;
-  return static_cast<std::size_t>(found - image.channels.begin());
-}
-float value(const Image& image, int x, int y, const std::string& name) {
-  return image.values[image.at(x, y, channel(image, name))];
-}
 
 // (R24) Check that the parts of the light add up to the picture, by models that tell less and more, with two suns, a
 // sky and two kinds of trees, whose ids all appear; the sum of four parts is off by their roundings.
@@ -121,85 +48,6 @@ TEST(R24_StandRenderer, PartsOfTheLightAddUp) {
     EXPECT_EQ(std::ranges::count(image.channels, "single.R"), tellsSingle(model) ? 1 : 0);
     EXPECT_EQ(kinds, (std::set<float>{-1.f, 0.f, 1.f}));
   }
-}
-
-// The field of a stand, of any figures: a place for each leaf, as the front and the back of leaf i of tree t have them.
-struct SomeField {
-  std::vector<std::vector<std::uint32_t>> places;
-  std::vector<std::vector<glm::vec3>> sides;
-
-  explicit SomeField(const Woods& woods) {
-    for (const TreeKind& kind : woods.scene.kinds)
-      places.emplace_back(kind.mesh->leaf_of_triangle.begin(), kind.mesh->leaf_of_triangle.end());
-    for (std::size_t tree = 0; tree < woods.scene.stand.trees.size(); ++tree) {
-      sides.emplace_back();
-      const TreeMesh& mesh = *woods.scene.kindOf(woods.scene.stand.trees[tree]).mesh;
-      for (std::size_t side = 0; side < 2 * std::size_t{mesh.leaf_count}; ++side) {
-        const auto number = static_cast<float>(side % 97), of = static_cast<float>(tree);
-        sides.back().push_back(0.01f * glm::vec3(number, 97.f - number, 7.f * of));
-      }
-    }
-  }
-  // Tells it of the stand, of all but the last tree.
-  void tell(gl::DrawnStand& stand, std::uint64_t revision) const {
-    for (std::size_t kind = 0; kind < places.size(); ++kind) stand.kinds[kind].field_places = places[kind];
-    for (std::size_t tree = 0; tree + 1 < sides.size(); ++tree) stand.trees[tree].field = {sides[tree], revision};
-  }
-};
-
-// (F26) Check what a picture by the field shows against C++ and the figures told of each leaf's sides: those of the
-// side that is seen and of the other, in the suns' light and in the sky's; of a tree of which nothing is told nothing;
-// and that what has changed is sent, and nothing else.
-TEST(F26_StandRenderer, ShowsTheFieldOfEachLeafAndSide) {
-  Woods woods;
-  SomeField field(woods);
-  gl::DrawnStand stand = woods.stand();
-  field.tell(stand, 1);
-  Drawing drawing(stand);
-  const Camera camera = woods.camera();
-  const glm::vec3 along = viewAxes(camera).along;
-  shading::ShadingData data;
-  update(data, Model::field, woods.scene.kinds, {});
-  const shading::FragmentShading shading(Model::field, data);
-  std::set<bool> fronts;
-  for (std::uint64_t revision = 1; revision <= 2; ++revision) {
-    const Image image = drawing.picture(camera, {.model = Model::field, .samples = 1, .layers = kAll});
-    int leaves = 0, not_told = 0;
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const auto at = [&](const char* name) { return value(image, x, y, name); };
-        if (at("id.leaf") < 0.f) continue;
-        const auto tree = static_cast<std::size_t>(at("id.tree")), leaf = static_cast<std::size_t>(at("id.leaf"));
-        const TreeMesh& mesh = *woods.scene.kindOf(woods.scene.stand.trees[tree]).mesh;
-        const glm::vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
-        const glm::uvec3 t = mesh.leaf_triangles[static_cast<std::size_t>(at("id.triangle"))];
-        const glm::vec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
-        const std::size_t same = glm::dot(glm::cross(b - a, c - a), along) <= 0.f ? 0 : 1;
-        fronts.insert(same == 0);
-        const bool told = tree + 1 < field.sides.size();
-        (told ? leaves : not_told) += 1;
-        const shading::Surface surface =
-            shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), 0, 0, normal, -along);
-        const std::vector<glm::vec3>& sides = field.sides[tree];
-        const glm::vec3 expected =
-            told ? shading.shadeBySides(surface, sides[2 * leaf + same], sides[2 * leaf + 1 - same]).scattered
-                 : glm::vec3(0.f);
-        const std::array bands{"R", "G", "B"};
-        for (int band = 0; band < 3; ++band) {
-          const std::string name = bands[static_cast<std::size_t>(band)];
-          ASSERT_NEAR(at(("multiple." + name).c_str()), expected[band], kShading * (1.f + expected[band]));
-          ASSERT_EQ(at(("sky." + name).c_str()), 0.f);
-        }
-      }
-    EXPECT_GT(leaves, 1000);
-    EXPECT_GT(not_told, 100);
-    for (glm::vec3& side : field.sides[1]) side *= 0.5f;
-    EXPECT_EQ(drawing.renderer.update(stand).field, 0u);
-    stand.trees[1].field.revision = 2;
-    const std::size_t sent = drawing.renderer.update(stand).field;
-    EXPECT_EQ(sent, revision == 1 ? field.sides[1].size() * sizeof(glm::vec4) : 0u);
-  }
-  EXPECT_EQ(fronts.size(), 2u);
 }
 
 // Check every model's picture pixel by pixel against C++, which shades the same fragments as the layers tell them: of

@@ -147,6 +147,37 @@ for pair in "start turned" "turned sun" "sun night" "wipe difference"; do
 done
 [ -s layers.exr ] || fail "no layers.exr"
 
+# The light field: at once on cells, then along lines, which is what stays; of another colour of the sun, which takes no
+# solution, there is no preview.
+cat >field.txt <<'END'
+panels off
+samples 1
+resize 200 160
+model field
+wait preview
+screenshot preview.png
+wait ready
+screenshot field.png
+expect recomputed preview:_cells 1
+sun 30 0 0.5
+wait preview
+screenshot dim_field.png
+wait ready
+screenshot dim_ready.png
+expect same dim_field.png dim_ready.png
+expect recomputed preview:_solutions 0
+sun 50 20
+wait preview
+sun 30 0 1
+wait ready
+screenshot again.png
+expect same field.png again.png
+END
+runs field.txt trees.toml
+cmp -s preview.png field.png && fail "the field's preview is the field"
+"$program" render trees.toml --model field --preview -o preview.exr >stdout.txt 2>stderr.txt || fail "render --preview: $(cat stderr.txt)"
+grep -q "on cells" stdout.txt || fail "render --preview: $(cat stdout.txt)"
+
 # From straight above, 0.02 m to a pixel: the first tree's leaves fill the middle of the picture. A click selects it, a drag
 # moves it by 50 pixels, which is one step.
 cat >above.toml <<'END'
@@ -285,6 +316,7 @@ stops 2 'wrong.txt:1: no tree is selected' 'move 1 1\n'
 stops 2 'wrong.txt:2: camera "x"' '\ncamera load x\n'
 stops 2 'wrong.txt:1: directions' 'directions 3\n'
 stops 2 'wrong.txt:1: wait reference' 'wait reference 0.1\n'
+stops 2 'wrong.txt:1: wait preview' 'wait preview\n'
 stops 1 'wrong.txt:1: expected 7 trees, but there are 3' 'expect trees 7\n'
 stops 1 'Monte Carlo needs a tree' \
   'panels off\nresize 60 40\nselect 1\ndelete\nselect 1\ndelete\nselect 1\ndelete\ncompare with reference\ncompare flip\nwait reference 0.5\n'

@@ -2,6 +2,7 @@
 // computes anew what its edits need.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <glm/geometric.hpp>
@@ -10,6 +11,7 @@
 #include "apps/view/session.hpp"
 #include "core/require.hpp"
 #include "render/compare/exact_powers.hpp"
+#include "render/stand_field.hpp"
 #include "tests/random_leaves.hpp"
 
 namespace sunfleck::view {
@@ -99,6 +101,84 @@ TEST(StandWorker, EndsWhatIsCancelled) {
   EXPECT_EQ(worker.failure(), nullptr);
 }
 
+// Check that a field that takes work comes as a preview first, then along lines; at once along lines where it takes
+// none; and that another wish ends the field under way, but not its preview.
+TEST(StandWorker, MakesThePreviewOfTheFieldFirst) {
+  Scene scene = smallDocument().scene;
+  StandWorker worker;
+  const auto wish = [&](std::uint64_t revision) {
+    StandWish asked = wishOf(scene, revision);
+    asked.needs.field = true;
+    worker.wish(asked);
+  };
+  std::optional<StandWorker::Result> result;
+  const auto next = [&](std::uint64_t revision, FieldBy by) {
+    ASSERT_TRUE(comes([&] { return (result = worker.take()).has_value(); }));
+    EXPECT_EQ(result->made.revision, revision);
+    EXPECT_EQ(result->made.needs.preview, by == FieldBy::cells);
+    ASSERT_NE(result->geometry->field(), nullptr);
+    EXPECT_EQ(result->geometry->field()->by(), by);
+    ASSERT_EQ(result->levels.size(), 1u);
+    EXPECT_NE(result->levels[0], nullptr);
+  };
+  wish(1);
+  next(1, FieldBy::cells);
+  const auto levels = result->levels[0];
+  EXPECT_TRUE(worker.state().busy);
+  worker.release();
+  next(1, FieldBy::lines);
+  StandField expected;
+  expected.update(scene);
+  const auto made = result->geometry->field()->sides(1), direct = expected.sides(1);
+  EXPECT_TRUE(std::equal(made.begin(), made.end(), direct.begin(), direct.end()));
+  EXPECT_EQ(result->levels[0], levels);
+  worker.release();
+  scene.suns[0].irradiance = glm::vec3(0.5f);
+  wish(2);
+  next(2, FieldBy::lines);
+  worker.release();
+  scene.suns[0].zenith = 0.5f;
+  wish(3);
+  next(3, FieldBy::cells);
+  scene.suns[0].zenith = 0.6f;
+  wish(4);
+  worker.release();
+  next(4, FieldBy::cells);
+  worker.release();
+  next(4, FieldBy::lines);
+  worker.release();
+  EXPECT_TRUE(comes([&] { return !worker.state().busy; }));
+  EXPECT_EQ(worker.failure(), nullptr);
+}
+
+// Check that a wish that comes while the field is solved along lines ends it, and is no failure; nor is what is
+// cancelled, and then the preview stays.
+TEST(StandWorker, EndsTheFieldForAnotherWish) {
+  Document document = smallDocument();
+  document.scene.kinds[0].mesh = std::make_shared<const TreeMesh>(randomLeaves(20'000, 1.f, 0.02f));
+  StandWish wish = wishOf(document.scene, 1);
+  wish.needs.field = true;
+  StandWorker worker;
+  worker.wish(wish);
+  std::optional<StandWorker::Result> result;
+  ASSERT_TRUE(comes([&] { return (result = worker.take()).has_value(); }));
+  worker.release();
+  ASSERT_TRUE(comes([&] { return worker.state().what == "light field" && worker.state().done > 0.; }));
+  wish.revision = 2;
+  wish.scene.suns[0].zenith = 0.4f;
+  worker.wish(wish);
+  ASSERT_TRUE(comes([&] { return (result = worker.take()).has_value(); }));
+  EXPECT_EQ(result->made.revision, 2u);
+  EXPECT_TRUE(result->made.needs.preview);
+  EXPECT_EQ(worker.failure(), nullptr);
+  worker.release();
+  ASSERT_TRUE(comes([&] { return worker.state().what == "light field" && worker.state().done > 0.; }));
+  worker.cancel();
+  ASSERT_TRUE(comes([&] { return !worker.state().busy; }));
+  EXPECT_FALSE(worker.take());
+  EXPECT_EQ(worker.failure(), nullptr);
+}
+
 // Hands everything on until the session has what it needs, as the viewer does.
 bool settle(Session& session) {
   return comes([&] {
@@ -132,6 +212,35 @@ TEST(Session, ComputesAnewWhatAnEditNeedsAlone) {
   session.undo();
   ASSERT_TRUE(settle(session));
   EXPECT_EQ(session.document().scene.sun().zenith, 0.f);
+}
+
+// A field is there when it has been solved along lines, and its preview counts with it as what a change made.
+TEST(Session, TellsOfTheField) {
+  Session session("small", [] { return smallDocument(); });
+  ASSERT_TRUE(settle(session));
+  EXPECT_TRUE(session.fieldText().empty());
+  EXPECT_FALSE(session.drawable(Model::field));
+  session.edit(SetModel{Model::field});
+  std::vector<std::string> told;
+  ASSERT_TRUE(comes([&] {
+    session.advance();
+    if (const auto result = session.take()) {
+      session.release(*result);
+      told.push_back(session.fieldText());
+      EXPECT_TRUE(session.drawable(Model::field) && session.showsField());
+      EXPECT_EQ(session.upToDate(), told.size() == 2);
+    }
+    return session.upToDate() && !session.work().busy;
+  }));
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0], "preview on cells");
+  EXPECT_TRUE(told[1].starts_with("field: ")) << told[1];
+  EXPECT_NE(told[1].find(" iterations, error below 0."), std::string::npos) << told[1];
+  for (const std::string name : {"field: solutions", "preview: solutions"}) {
+    const auto cost = std::ranges::find(session.lastCosts(), name, &ProductCost::name);
+    ASSERT_NE(cost, session.lastCosts().end()) << name;
+    EXPECT_EQ(cost->made, 1u) << name;
+  }
 }
 
 // 8 x 8 trees. A sun that turns makes one map, each tree's depths and G along it; a tree that moves makes no map, and

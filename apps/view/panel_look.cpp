@@ -21,7 +21,9 @@ const char* aboutOf(Model model) {
     case Model::pp:
       return "The exact slab, from a table made once for these leaves, with G";
     case Model::field:
-      return "Light that leaves, wood and ground exchange, solved for in the background";
+      return "Light that leaves, wood and ground exchange, solved for in the background; on cells, some per cent off, "
+             "until "
+             "that is done";
   }
   return "";
 }
@@ -86,6 +88,7 @@ void Panels::drawModel(Session& session) {
       session.attempt([&] { session.edit(SetModel{model}); });
     tip(aboutOf(model));
   }
+  if (!session.fieldText().empty()) ImGui::TextDisabled("%s", session.fieldText().c_str());
   heading("Picture");
   if (ImGui::BeginCombo("shows", nameOf(look.layer).c_str())) {
     for (const Layer layer : kLayers)

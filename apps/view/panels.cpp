@@ -151,9 +151,11 @@ void Panels::drawStatus(glm::ivec2 window, float height, Session& session, const
     else
       ImGui::TextUnformatted(session.message().c_str());
     if (session.loaded() && !report.frame_ms.empty()) {
-      const std::string told =
-          fmt::format("{}   {} of {} samples   {:.0f} ms a frame", nameOf(session.document().model), report.samples,
-                      session.look.samples, report.frame_ms.back());
+      const std::string told = fmt::format("{}   {} of {} samples   {:.0f} ms a frame",
+                                           session.document().model == Model::field && !session.fieldText().empty()
+                                               ? session.fieldText()
+                                               : nameOf(session.document().model),
+                                           report.samples, session.look.samples, report.frame_ms.back());
       ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(told.c_str()).x - ImGui::GetFontSize());
       ImGui::TextDisabled("%s", told.c_str());
     }

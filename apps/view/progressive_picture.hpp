@@ -14,6 +14,7 @@ struct PictureKey {
   Model model = Model::sppg;
   bool layers = false, fewer_leaves = true;
   std::uint64_t stand = 0;  // which the renderer holds
+  std::uint64_t field = 0;  // revision of its light field, where the model shows it
   bool operator==(const PictureKey&) const = default;
 };
 

@@ -11,6 +11,7 @@
 #include "core/random.hpp"
 #include "core/require.hpp"
 #include "render/scene_file.hpp"
+#include "render/stand_field.hpp"
 #include "sky/solar_position.hpp"
 
 namespace sunfleck::view {
@@ -20,6 +21,28 @@ namespace {
 TreeKind readKind(const std::string& species_or_file, std::uint64_t seed) {
   if (std::filesystem::path(species_or_file).has_extension()) return readScene(species_or_file).kinds.front();
   return grownKind(species_or_file, seed);
+}
+
+// Counts and times of products, by their names.
+void add(std::vector<ProductCost>& sums, const std::vector<ProductCost>& costs) {
+  for (const ProductCost& cost : costs) {
+    const auto known = std::ranges::find(sums, cost.name, &ProductCost::name);
+    if (known == sums.end()) {
+      sums.push_back(cost);
+      continue;
+    }
+    known->made += cost.made;
+    known->adjusted += cost.adjusted;
+    known->reused += cost.reused;
+    known->seconds += cost.seconds;
+  }
+}
+
+std::string textOf(const StandField& field) {
+  if (field.by() == FieldBy::cells) return "preview on cells";
+  const FieldResult& result = field.result();
+  return fmt::format("field: {} iterations, {} {:.2g} %", result.iterations,
+                     result.converged ? "error below" : "not steady yet, error up to", 100. * result.error_bound);
 }
 
 }  // namespace
@@ -274,21 +297,21 @@ void Session::goTo(const std::string& saved_camera) {
 }
 
 void Session::release(const StandWorker::Result& shown) {
-  shown_ = shown.made.revision;
-  shown_needs_ = answered_needs_ = {.exact = shown.made.exact, .field = shown.made.needs.field};
-  last_costs_ = shown.costs;
-  last_seconds_ = shown.seconds;
-  if (shown.from_nothing) prepared_seconds_ = shown.seconds;
-  if (recomputed_.size() != last_costs_.size()) {
-    recomputed_ = last_costs_;
+  const StandWish& made = shown.made;
+  shown_ = made.revision;
+  shown_needs_ = {.exact = made.exact, .field = made.needs.field};
+  answered_needs_ = {.exact = made.exact, .field = made.needs.field && !made.needs.preview};
+  field_text_ = made.needs.field ? textOf(*shown.geometry->field()) : "";
+  if (made.previewed) {  // what a preview began
+    add(last_costs_, shown.costs);
+    last_seconds_ += shown.seconds;
   } else {
-    for (std::size_t i = 0; i < recomputed_.size(); ++i) {
-      recomputed_[i].made += last_costs_[i].made;
-      recomputed_[i].adjusted += last_costs_[i].adjusted;
-      recomputed_[i].reused += last_costs_[i].reused;
-      recomputed_[i].seconds += last_costs_[i].seconds;
-    }
+    last_costs_ = shown.costs;
+    last_seconds_ = shown.seconds;
+    prepares_ = shown.from_nothing;
   }
+  if (prepares_) prepared_seconds_ = last_seconds_;
+  add(recomputed_, shown.costs);
   worker_.release();
 }
 

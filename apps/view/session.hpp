@@ -115,7 +115,12 @@ class Session {
   std::optional<std::string> writes() const;  // what is being written
   // Work of which message() tells the end: growing, reading, writing.
   bool hasTasks() const { return !prepared_.empty() || !writings_.empty(); }
-  const std::vector<ProductCost>& lastCosts() const { return last_costs_; }  // of the last update
+  // How the light field that is shown was made, for people; empty where none is needed.
+  const std::string& fieldText() const { return field_text_; }
+  // Whether the field of the document's stand is there to be drawn, if only its preview.
+  bool showsField() const { return loaded() && shown_ == history_->stand() + 1 && shown_needs_.field; }
+  bool needsField() const { return needs().field; }
+  const std::vector<ProductCost>& lastCosts() const { return last_costs_; }  // of the last change
   double lastSeconds() const { return last_seconds_; }
   // Of the first update since the scene was read or its quality changed: all there is, made from nothing.
   double preparedSeconds() const { return prepared_seconds_; }
@@ -147,6 +152,8 @@ class Session {
   std::uint64_t gesture_ = 0, strokes_ = 0;
   std::vector<ProductCost> last_costs_, recomputed_;
   double last_seconds_ = 0., prepared_seconds_ = 0.;
+  bool prepares_ = false;  // the last change made all from nothing
+  std::string field_text_;
   bool fitted_ = false;
   std::string message_;
   bool message_is_error_ = false;

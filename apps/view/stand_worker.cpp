@@ -1,6 +1,9 @@
 #include "apps/view/stand_worker.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "core/require.hpp"
 
 namespace sunfleck::view {
 namespace {
@@ -92,7 +95,7 @@ void StandWorker::work() {
       wish_.reset();
     }
     working_ = true;
-    cancelled_ = false;
+    cancelled_ = superseded_ = false;
     what_ = task.name;
     done_ = 0.;
     began_ = Clock::now();
@@ -105,7 +108,7 @@ void StandWorker::work() {
     }
     lock.lock();
     working_ = false;
-    if (!cancelled_ && failure) failure_ = failure;
+    if (!cancelled_ && !superseded_ && failure) failure_ = failure;
   }
 }
 
@@ -115,27 +118,74 @@ bool StandWorker::tell(double done) {
   return !cancelled_;
 }
 
+void StandWorker::begin(const std::string& part) {
+  const std::lock_guard lock(mutex_);
+  what_ = part;
+  done_ = 0.;
+}
+
+void StandWorker::update(const StandWish& wish) {
+  bool field_begun = false;
+  const auto of_field = [&](double done) {
+    if (!std::exchange(field_begun, true)) begin(wish.needs.preview ? "preview of the light field" : "light field");
+    if (!tell(done)) return false;
+    const std::lock_guard lock(mutex_);
+    // A preview is what is seen while wishes come one after the other.
+    superseded_ = !wish.needs.preview && wish_.has_value();
+    return !superseded_;
+  };
+  geometry_->update(
+      wish.scene, wish.needs, std::nullopt, [this](double done) { return tell(done); }, of_field);
+}
+
+void StandWorker::makeLevels(const Progress& progress) {
+  std::vector<MeshLevels> levels;
+  for (const StandKind& kind : geometry_->kinds()) {
+    MeshLevels& of_kind = levels.emplace_back(MeshLevels{kind.mesh, {}});
+    const auto known = std::ranges::find(levels_, kind.mesh, &MeshLevels::mesh);
+    if (known != levels_.end()) of_kind.levels = known->levels;
+  }
+  double done = 0.;
+  for (MeshLevels& of_kind : levels) {
+    done += 1. / static_cast<double>(levels.size());
+    if (!of_kind.mesh || of_kind.levels) continue;
+    of_kind.levels = std::make_shared<const gl::TreeLevels>(gl::treeLevels(*of_kind.mesh));
+    requireGoOn(progress, done);
+  }
+  levels_ = std::move(levels);
+}
+
 void StandWorker::make(StandWish wish) {
   const auto start = Clock::now();
   const bool from_nothing = !geometry_ || geometry_->effort() != wish.effort;
   if (from_nothing) geometry_ = std::make_unique<StandGeometry>(wish.effort);
   const auto progress = [this](double done) { return tell(done); };
-  geometry_->update(wish.scene, wish.needs, std::nullopt, progress);
+  wish.needs.preview = wish.needs.field && !wish.previewed && !geometry_->fieldUpToDate(wish.scene);
+  try {
+    update(wish);
+  } catch (const InvalidInput&) {  // such as a stand too wide for cells: then there is no preview
+    if (!std::exchange(wish.needs.preview, false)) throw;
+    update(wish);
+  }
   const double seconds = secondsSince(start);
+  begin("levels of detail");
+  makeLevels(progress);
   if (wish.exact) {
-    {
-      const std::lock_guard lock(mutex_);
-      what_ = "tables of the exact solution";
-      done_ = 0.;
-    }
+    begin("tables of the exact solution");
     tables_.make(wish.scene.kinds, progress);
   }
   Result result{.made = std::move(wish),
                 .geometry = geometry_.get(),
+                .levels = {},
                 .costs = geometry_->lastCosts(),
                 .seconds = seconds,
                 .from_nothing = from_nothing};
+  for (const MeshLevels& of_kind : levels_) result.levels.push_back(of_kind.levels);
   const std::lock_guard lock(mutex_);
+  if (result.made.needs.preview && !wish_) {
+    wish_ = result.made;
+    wish_->previewed = true;
+  }
   result_ = std::move(result);
 }
 

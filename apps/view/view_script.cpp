@@ -148,6 +148,7 @@ const std::vector<Form>& forms() {
       {Verb::restore, "restore", {}, "the window"},
       {Verb::frames, "frames", {whole("NUMBER", 1., 1e6)}, "draws so many"},
       {Verb::wait_ready, "wait ready", {}, "until all is computed and the picture is smooth"},
+      {Verb::wait_preview, "wait preview", {}, "until the light field is seen, if only its preview on cells"},
       {Verb::wait_reference,
        "wait reference",
        {number("NOISE", 1e-4, 1.)},

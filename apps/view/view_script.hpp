@@ -65,6 +65,7 @@ enum class Verb {
   restore,
   frames,
   wait_ready,
+  wait_preview,
   wait_reference,
   cancel,
   screenshot,

@@ -12,6 +12,7 @@
 #include "core/require.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_writer.hpp"
+#include "render/stand_field.hpp"
 
 namespace sunfleck::view {
 namespace {
@@ -89,8 +90,11 @@ void Viewer::takeResult() {
   if (!result) return;
   const Elapsed sending;
   try {
-    const gl::Sent sent = renderer_.update(gl::drawnStand(result->made.scene, *result->geometry));
-    report_.sent_bytes = sent.meshes + sent.maps + sent.trees + sent.cells + sent.sky;
+    gl::DrawnStand stand = gl::drawnStand(result->made.scene, *result->geometry);
+    for (std::size_t kind = 0; kind < stand.kinds.size(); ++kind) stand.kinds[kind].levels = result->levels[kind];
+    const gl::Sent sent = renderer_.update(stand);
+    report_.sent_bytes = sent.meshes + sent.maps + sent.trees + sent.cells + sent.sky + sent.field;
+    field_ = result->geometry->field() ? result->geometry->field()->revision() : 0;
     stand_ = result->made.revision;
   } catch (const gl::TooLarge& e) {
     session_.say(e.what(), true);
@@ -180,7 +184,8 @@ PictureKey Viewer::keyOf(Model model) const {
           .model = model,
           .layers = frameLayer(session_.look.layer) != gl::Layer::total,
           .fewer_leaves = session_.look.fewer_leaves,
-          .stand = stand_};
+          .stand = stand_,
+          .field = model == Model::field ? field_ : 0};
 }
 
 // The last whole picture stays while the next stand is computed.

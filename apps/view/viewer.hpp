@@ -121,6 +121,7 @@ class Viewer {
   std::optional<gl::FrameTarget> probe_target_;  // of one pixel
   std::uint64_t stand_ = 0;                      // which the renderer holds; 0: none
   std::size_t drawn_trees_ = 0;                  // of that stand
+  std::uint64_t field_ = 0;                      // revision of its light field; 0: none
   Model model_ = Model::sppg;                    // the document's, as soon as it can be drawn
   std::optional<Exr> exr_;
   ReferencePicture tracing_;

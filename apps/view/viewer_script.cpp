@@ -108,6 +108,9 @@ bool Viewer::blocked(const ScriptStep& step) {
     case Verb::window_screenshot:
     case Verb::expect_recomputed:
       return !settled();
+    case Verb::wait_preview:
+      if (!session_.needsField()) throw InvalidInput("wait preview: must follow model field");
+      return !session_.showsField() || !a_.done(1) || !(a_.key() == keyOf(model_));
     case Verb::wait_reference:
       if (session_.look.comparison == Comparison::off || session_.look.other)
         throw InvalidInput("wait reference: must follow compare with reference, and wipe, flip or difference");
@@ -331,6 +334,7 @@ void Viewer::executeLook(const ScriptStep& step) {
       frames_left_ = whole(step, 0, 1);
       break;
     case Verb::wait_ready:
+    case Verb::wait_preview:
     case Verb::wait_reference:
       break;
     case Verb::cancel:

@@ -17,14 +17,14 @@ double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
 }
 
-ModelResult fieldResult(const Scene& scene, int band) {
+ModelResult fieldResult(const Scene& scene, int band, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   StandField field;
-  field.update(scene);
+  field.update(scene, FieldBy::lines, progress);
   ModelResult result{.model = Model::field, .irradiance = leafIrradiance(field.result(), scene, band)};
   const double all = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const ProductCost& cost : field.costs())
-    if (cost.name != "solutions") result.prepare_seconds += cost.seconds;
+    if (cost.name != "field: solutions") result.prepare_seconds += cost.seconds;
   result.shade_seconds = all - result.prepare_seconds;
   return result;
 }
@@ -177,7 +177,7 @@ double Validation::albedo() const {
 }
 
 Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
-                    const Progress& progress) {
+                    const Progress& progress, const Progress& field_progress) {
   const std::vector<Model> models = judgedModels(scene, effort.band);
   const auto band = effort.band;
   Validation result{.scene = scene, .effort = effort};
@@ -204,7 +204,13 @@ Validation validate(const Scene& scene, const StandGeometry& stand, const Valida
   const Scene scattering = effort.with_wood ? scene : withoutWood(scene);
   for (const Model model : models) {
     if (model == Model::field) {
-      result.models.push_back(fieldResult(scattering, band));
+      if (!goOn(field_progress, 0.)) continue;
+      try {
+        result.models.push_back(fieldResult(scattering, band, field_progress));
+      } catch (const std::runtime_error&) {
+        if (goOn(field_progress, 1.)) throw;
+        continue;
+      }
       result.models.back().errors =
           modelErrors(result.models.back().irradiance, result.reference.leaf_irradiance, result.categories);
       continue;

@@ -65,8 +65,9 @@ void requireValidatable(const Scene& scene, Model model, int band);
 std::vector<Model> judgedModels(const Scene& scene, int band);
 
 // `stand` is up to date for the scene, with G for the models that ask for it. Throws InvalidInput as judgedModels()
-// does.
+// does. What is ended early is judged by the paths done; the field, if it is not done then, is left out.
+//   field_progress  of the light field, which is solved last
 Validation validate(const Scene& scene, const StandGeometry& stand, const ValidationEffort& effort,
-                    const Progress& progress = {});
+                    const Progress& progress = {}, const Progress& field_progress = {});
 
 }  // namespace sunfleck

@@ -52,6 +52,7 @@ DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry, const O
   stand.ground_albedo = scene.ground_albedo;
   stand.sky = geometry.sky();
   stand.ground_sky = geometry.groundSky();
+  if (geometry.field()) stand.ground_field = {geometry.field()->ground(), geometry.field()->revision()};
   return stand;
 }
 

@@ -32,16 +32,19 @@ struct DrawnCells {
   glm::ivec3 size{0};     // [cell]; 0: there are none
 };
 
+struct TreeLevels;
+
 struct DrawnKind {
-  TreeKind tree;  // its mesh turned as its trees stand
+  TreeKind tree;                             // its mesh turned as its trees stand
+  std::shared_ptr<const TreeLevels> levels;  // of that mesh; none: they are made when it is sent
   DrawnCells cells;
   std::vector<LightMap> maps;  // of each light
   // Of each triangle of the mesh, leaves before wood, its place in the light field; empty where that is not told.
   std::span<const std::uint32_t> field_places;
 };
 
-// Values of all cells of a tree, or of all its places in the light field; another revision whenever they are others
-// (core/revision.hpp).
+// Values of all cells of a tree, or of all its places in the light field, or of the ground; another revision whenever
+// they are others (core/revision.hpp).
 template <typename Value>
 struct TreeValues {
   std::span<const Value> values;  // empty: not told
@@ -66,6 +69,8 @@ struct DrawnStand {
   glm::vec3 ground_albedo{0.f};     // per band [1]; 0 in all: there is none
   std::shared_ptr<const SkyMap> sky;
   GroundSky ground_sky;  // what the ground receives of it
+  // (F31) Irradiance of each of the ground's cells, ground_sky.grid, by what the trees scatter [1].
+  TreeValues<glm::vec3> ground_field;
 };
 
 // Displacements of a stand's copies so many periods around, the stand itself first [m]. Where the stand is not periodic

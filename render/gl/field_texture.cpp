@@ -17,21 +17,32 @@ std::size_t FieldTexture::update(const DrawnStand& stand, const std::vector<cons
     now[tree] = {static_cast<std::uint32_t>(texels), field.revision};
     texels += field.values.size();
   }
+  Held ground;
+  if (!stand.ground_field.values.empty()) {
+    ground = {static_cast<std::uint32_t>(texels), stand.ground_field.revision};
+    texels += stand.ground_field.values.size();
+  }
   std::size_t sent = texels > 0 ? sendPlaces(stand, levels) : 0;
   if (texels > light_.capacity()) {
     light_.resize(texels);
     trees_.clear();
+    ground_ = {};
   }
   trees_.resize(now.size());
-  std::vector<glm::vec4> of_tree;
+  std::vector<glm::vec4> texel_values;
+  const auto send = [&](const TreeValues<glm::vec3>& values, std::uint32_t first) {
+    texel_values.clear();
+    for (const glm::vec3& value : values.values) texel_values.emplace_back(value, 0.f);
+    light_.write(first, std::span<const glm::vec4>(texel_values));
+    sent += texel_values.size() * sizeof texel_values[0];
+  };
   for (std::size_t tree = 0; tree < now.size(); ++tree) {
     if (now[tree].first == ~0u || now[tree] == trees_[tree]) continue;
-    of_tree.clear();
-    for (const glm::vec3& side : stand.trees[tree].field.values) of_tree.emplace_back(side, 0.f);
-    light_.write(now[tree].first, std::span<const glm::vec4>(of_tree));
-    sent += of_tree.size() * sizeof of_tree[0];
+    send(stand.trees[tree].field, now[tree].first);
   }
   trees_ = std::move(now);
+  if (ground.first != ~0u && ground != ground_) send(stand.ground_field, ground.first);
+  ground_ = ground;
   return sent;
 }
 

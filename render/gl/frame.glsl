@@ -15,11 +15,11 @@ layout(std140, binding = 0) uniform Frame {
   vec4 ground;        // xyz: centre of the ground's disc; w: its radius                    [m]
   vec4 ground_albedo; // rgb: per band; w: 1 where the ground is drawn
   vec4 period;        // xy: side lengths, 0: none; zw: where the period begins              [m]
-  vec4 sky_azimuth;   // x: where the sky's first column begins [rad]
-  vec4 ground_cells;  // xy: corner of the cells in which the ground's skylight is told [m]; zw: 1 / extent [1/m]
+  vec4 sky_azimuth;   // x: where the sky's first column begins [rad]; yz: cells of the ground
+  vec4 ground_cells;  // xy: corner of the cells in which the ground's light is told [m]; zw: 1 / extent [1/m]
   vec4 ground_open;   // rgb: irradiance of open ground by the sky [1]; w: 1 where cells are told
   vec4 cell_part;     // xyz: 1 / cells of the texture that holds those of all trees
-  uvec4 counts;       // x: lights; y, z: rows and columns of the sky, 0: none
+  uvec4 counts;       // x: lights; y, z: rows and columns of the sky, 0: none; w: see FieldTexture::ground()
   LightFrame light_frames[4];
 };
 

@@ -125,6 +125,23 @@ vec3 byField(Place place, Tree tree, uint triangle) {
   return shadeBySides(place.surface, texelFetch(field_light, seen).rgb,
                       texelFetch(field_light, place.front ? at + 1 : at).rgb).scattered;
 }
+
+// (F31) Irradiance of a place of the ground by what trees scatter, between the middles of its cells. Beyond these, where
+// the ground goes on, there is none: it fades over the outermost two.
+vec3 fieldOnGround(vec2 here) {
+  vec2 size = sky_azimuth.yz, at = (here - ground_cells.xy) * ground_cells.zw * size;
+  if (counts.w == 0u || any(lessThan(at, vec2(0.0))) || any(greaterThan(at, size))) return vec3(0.0);
+  vec2 low = floor(at - 0.5), part = at - 0.5 - low, inside = 0.5 * min(at, size - at);
+  float fading = period.x > 0.0 ? 1.0 : min(min(inside.x, inside.y), 1.0);
+  vec3 sum = vec3(0.0);
+  for (int corner_number = 0; corner_number < 4; ++corner_number) {
+    vec2 one = vec2(corner_number & 1, corner_number >> 1), cell = low + one;
+    vec2 share = mix(1.0 - part, part, one);
+    cell = period.x > 0.0 ? cell - floor(cell / size) * size : clamp(cell, vec2(0.0), size - 1.0);
+    sum += share.x * share.y * texelFetch(field_light, int(counts.w) - 1 + int(cell.y) * int(size.x) + int(cell.x)).rgb;
+  }
+  return fading * sum;
+}
 #endif
 
 void main() {
@@ -164,6 +181,7 @@ void main() {
   }
 #ifdef FIELD
   if (of_tree) sum.scattered += byField(place, tree, id.y);
+  if (!of_tree && place.coverage > 0.0) sum.scattered += ground_albedo.rgb * fieldOnGround(place.lit.xy) / kPi;
 #endif
   vec3 sky_sum = vec3(0.0), behind = vec3(0.0);
 #ifndef NO_SKY

@@ -53,7 +53,7 @@ Sent StandData::update(const DrawnStand& stand) {
   sent.cells = cells_.update(stand);
   sent.sky = updateSky(stand);
   std::vector<const TreeLevels*> levels;
-  for (const Kind& kind : kinds_) levels.push_back(&kind.levels);
+  for (const Kind& kind : kinds_) levels.push_back(kind.levels.get());
   sent.field = field_.update(stand, levels);
   sent.trees = updateTrees(stand);
   placeGround(stand);
@@ -62,6 +62,8 @@ Sent StandData::update(const DrawnStand& stand) {
   lit_by_sky_ = stand.sky ||
                 std::ranges::any_of(stand.trees, [](const DrawnTree& tree) { return !tree.sky_light.values.empty(); });
   frame_.counts = {static_cast<std::uint32_t>(lights_.size()), 0u, 0u, 0u};
+  frame_.counts.w = field_.ground();
+  frame_.sky_azimuth = glm::vec4(0.f, glm::vec2(stand.ground_sky.grid.size), 0.f);
   frame_.cell_part = glm::vec4(1.f / glm::vec3(cells_.size()), 0.f);
   if (stand.sky) {
     frame_.counts.y = static_cast<std::uint32_t>(stand.sky->rows());
@@ -82,22 +84,24 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
     if (kinds_[i].mesh == mesh) continue;
     changed = true;
     kinds_[i].mesh = nullptr;  // until its triangles are sent
-    kinds_[i].levels = mesh ? treeLevels(*mesh) : TreeLevels{};
-    kinds_[i].buffers.emplace(kinds_[i].levels);
-    sent +=
-        kinds_[i].levels.vertices.size() * sizeof(glm::vec3) + kinds_[i].levels.indices.size() * sizeof(std::uint32_t);
+    kinds_[i].levels = stand.kinds[i].levels;
+    if (!kinds_[i].levels)
+      kinds_[i].levels = std::make_shared<const TreeLevels>(mesh ? treeLevels(*mesh) : TreeLevels{});
+    const TreeLevels& levels = *kinds_[i].levels;
+    kinds_[i].buffers.emplace(levels);
+    sent += levels.vertices.size() * sizeof(glm::vec3) + levels.indices.size() * sizeof(std::uint32_t);
   }
   if (changed) {
     first_triangle_.clear();
     std::size_t count = 0;
     for (const Kind& kind : kinds_) {
       first_triangle_.push_back(static_cast<std::uint32_t>(count));
-      count += kind.levels.triangles.size();
+      count += kind.levels->triangles.size();
     }
     static_assert(sizeof(TriangleData) == 2 * sizeof(glm::vec4));
     triangles_.resize(2 * count);
     for (std::size_t i = 0; i < kinds_.size(); ++i)
-      triangles_.write(2 * first_triangle_[i], std::span<const TriangleData>(kinds_[i].levels.triangles));
+      triangles_.write(2 * first_triangle_[i], std::span<const TriangleData>(kinds_[i].levels->triangles));
     for (std::size_t i = 0; i < kinds_.size(); ++i) kinds_[i].mesh = stand.kinds[i].tree.mesh;
     sent += count * sizeof(TriangleData);
   }
@@ -152,8 +156,8 @@ std::size_t StandData::updateTrees(const DrawnStand& stand) {
       kinds_[tree.kind].drawn.push_back(
           {.position = tree.position + shift, .number = static_cast<std::uint32_t>(drawn.size())});
       drawn.push_back({.position = tree.position + shift, .tree = number});
-      if (!kinds_[tree.kind].levels.box.empty())
-        box_.include(moved(kinds_[tree.kind].levels.box, drawn.back().position));
+      if (!kinds_[tree.kind].levels->box.empty())
+        box_.include(moved(kinds_[tree.kind].levels->box, drawn.back().position));
     }
   trees_.assign(std::span<const TreeData>(trees));
   drawn_.assign(std::span<const Standing>(drawn));
@@ -178,16 +182,17 @@ void StandData::placeGround(const DrawnStand& stand) {
   frame_.ground_albedo = glm::vec4(stand.ground_albedo, anyAbove(stand.ground_albedo, 0.f) ? 1.f : 0.f);
   frame_.period = glm::vec4(0.f);
   if (stand.period)
-    frame_.period =
-        glm::vec4(*stand.period, stand.ground_sky.irradiance.empty() ? glm::vec2(ground_.centre) - 0.5f * *stand.period
-                                                                     : stand.ground_sky.grid.low);
+    frame_.period = glm::vec4(*stand.period, stand.ground_sky.irradiance.empty() && stand.ground_field.values.empty()
+                                                 ? glm::vec2(ground_.centre) - 0.5f * *stand.period
+                                                 : stand.ground_sky.grid.low);
 }
 
 std::size_t StandData::sendGrids(const DrawnStand& stand) {
   // Places that are lit: of the trees of the stand itself, and of the ground, in one period.
   std::vector<Bounds> lit_boxes;
   for (const DrawnTree& tree : stand.trees)
-    if (!kinds_[tree.kind].levels.box.empty()) lit_boxes.push_back(moved(kinds_[tree.kind].levels.box, tree.position));
+    if (!kinds_[tree.kind].levels->box.empty())
+      lit_boxes.push_back(moved(kinds_[tree.kind].levels->box, tree.position));
   const glm::vec3 half(ground_.radius, ground_.radius, 0.f);
   const glm::vec3 start(frame_.period.z, frame_.period.w, ground_.centre.z);
   if (stand.period)

@@ -45,7 +45,7 @@ class StandData {
 
   struct Kind {
     std::shared_ptr<const TreeMesh> mesh;
-    TreeLevels levels;
+    std::shared_ptr<const TreeLevels> levels = std::make_shared<const TreeLevels>();
     std::optional<TreeMeshBuffers> buffers;
     std::vector<detail::DrawnData> drawn;  // trees of this kind, copies included
   };

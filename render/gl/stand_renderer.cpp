@@ -140,7 +140,7 @@ FrameCost StandRenderer::draw(const View& view, FrameTarget& target) {
     const glm::mat4 clip = clipFromWorld(view, target.size(), reach(view));
     for (const StandData::Kind& kind : data_.kinds()) {
       if (kind.drawn.empty()) continue;
-      const VisibleTrees visible = visibleTrees(kind.levels, kind.drawn, view, clip);
+      const VisibleTrees visible = visibleTrees(*kind.levels, kind.drawn, view, clip);
       kind.buffers->draw(visible);
       cost.triangles += visible.triangles;
       cost.draw_calls += visible.commands.size();
@@ -169,7 +169,7 @@ std::optional<Pick> StandRenderer::at(glm::ivec2 pixel, const View& view, const 
     return seen ? std::optional<Pick>({.tree = {}, .leaf = {}, .place = there}) : std::nullopt;
   }
   const StandData::Seen seen = data_.seen(id.x);
-  const TriangleData& triangle = data_.kinds()[seen.kind].levels.triangles[id.y];
+  const TriangleData& triangle = data_.kinds()[seen.kind].levels->triangles[id.y];
   const glm::vec3 normal = glm::normalize(glm::vec3(triangle.plane));
   const float away = (triangle.plane.w - glm::dot(normal, look.from - seen.position)) / glm::dot(normal, look.along);
   Pick pick{.tree = seen.tree, .leaf = {}, .place = look.from + away * look.along};
