@@ -131,7 +131,7 @@ TEST(F31_GroundLight, IsOnCellsAsByLines) {
     Stand stand = twoTrees();
     stand.period = period;
     CellField cells = cellField(kinds, stand);
-    LeafField lines;
+    LeafField lines({.exchange = {.axes = 80, .crossings = 1.f}});  // many, since light of each comes to one place
     lines.setStand(kinds, stand);
     cells.solve(twoSuns());
     lines.solve(twoSuns());
