@@ -111,6 +111,7 @@ void CellField::makeCells() {
         in_cells_.push_back(i);
     }
   cells_.emplace(std::move(medium), clumping_);
+  ground_shares_.clear();
 }
 
 EnteringLight CellField::entering(std::size_t source, std::span<const std::size_t> bands) const {
@@ -219,13 +220,14 @@ std::vector<FieldPart> CellField::parts() const {
 }
 
 // (F31)
-std::vector<glm::vec3> CellField::groundLight(const GroundGrid& grid) const {
+std::vector<glm::vec3> CellField::groundLight(const GroundGrid& grid) {
   const std::vector<glm::vec3> sent = sentRadiance(elements_, parts(), lighting_.kinds);
   std::vector<glm::vec3> radiance(sent.size());
   for (std::size_t i = 0; i < in_cells_.size(); ++i)
     for (std::size_t side = 0; side < 2; ++side)
       radiance[2 * in_cells_[i] + side] = sent[2 * i + (i < elements_.elements.leaf_elements ? side : 0)];
-  return sunfleck::groundLight(grid, cells_->medium(), clumping_, radiance);
+  if (ground_shares_.empty()) ground_shares_ = groundShares(cells_->medium(), clumping_);
+  return sunfleck::groundLight(grid, cells_->medium(), clumping_, ground_shares_, radiance);
 }
 
 }  // namespace sunfleck

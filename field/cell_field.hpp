@@ -49,7 +49,7 @@ class CellField {
   const FieldResult& solve(const FieldLighting& lighting, const Progress& progress = {});
 
   // (F31) As LeafField::groundLight(), on cells.
-  std::vector<glm::vec3> groundLight(const GroundGrid& grid) const;
+  std::vector<glm::vec3> groundLight(const GroundGrid& grid);
 
   std::vector<ProductCost> costs() const { return graph_.costs(); }  // clumping, cells, direct light, solutions
 
@@ -74,6 +74,7 @@ class CellField {
   StandElements elements_;
   std::vector<std::size_t> in_cells_;  // of each element, its number in the cells' medium
   std::optional<GridField> cells_;
+  std::vector<float> ground_shares_;  // of these cells, once they are asked for
   std::array<DirectLight, kMostFieldSuns> direct_;
   std::array<std::array<FieldSolution, kBands>, kSources> solutions_;
   FieldResult result_;

@@ -134,35 +134,57 @@ std::vector<glm::vec3> groundLight(const GroundGrid& grid, bool periodic, const 
 }
 
 // (F31)
-std::vector<glm::vec3> groundLight(const GroundGrid& grid, const CellMedium& medium, std::span<const float> clumping,
-                                   std::span<const glm::vec3> radiance) {
+std::vector<float> groundShares(const CellMedium& medium, std::span<const float> clumping) {
   const Downward down;
   const std::size_t directions = down.along.size(), slots = medium.grid.cells.size();
-  std::vector<float> extinction(slots * directions, 0.f);
-  std::vector<glm::vec3> sent(slots * directions, glm::vec3(0.f));  // power
+  std::vector<float> extinction(slots * directions, 0.f), shares(slots * directions);
   tbb::parallel_for(std::size_t{0}, slots, [&](std::size_t slot) {
     for (std::uint32_t i = medium.first_piece[slot]; i < medium.first_piece[slot + 1]; ++i) {
       const CellPiece& piece = medium.pieces[i];
       const float area = clumping[medium.material[piece.element] / 2] * piece.area;
-      for (std::size_t k = 0; k < directions; ++k) {
-        const float cosine = glm::dot(medium.normal[piece.element], down.along[k]);
-        extinction[slot * directions + k] += area * std::abs(cosine) / medium.grid.volume();
-        sent[slot * directions + k] +=
-            (down.weight[k] * area * std::abs(cosine)) * radiance[2 * piece.element + (cosine > 0.f ? 0 : 1)];
-      }
+      for (std::size_t k = 0; k < directions; ++k)
+        extinction[slot * directions + k] +=
+            area * std::abs(glm::dot(medium.normal[piece.element], down.along[k])) / medium.grid.volume();
     }
   });
-  return summed(grid, medium.grid.periodic, slots, [&](Ground& ground, std::size_t slot) {
+  tbb::parallel_for(std::size_t{0}, slots, [&](std::size_t slot) {
+    for (std::size_t k = 0; k < directions; ++k)
+      shares[slot * directions + k] =
+          leaving(medium.grid, medium.grid.cells[slot], down.along[k],
+                  [&](std::uint32_t other) { return extinction[std::size_t{other} * directions + k]; });
+  });
+  return shares;
+}
+
+// (F31)
+std::vector<glm::vec3> groundLight(const GroundGrid& grid, const CellMedium& medium, std::span<const float> clumping,
+                                   std::span<const float> shares, std::span<const glm::vec3> radiance) {
+  constexpr float kLeast = 1e-3f;  // share that counts [1]
+  const Downward down;
+  const std::size_t directions = down.along.size();
+  return summed(grid, medium.grid.periodic, medium.grid.cells.size(), [&](Ground& ground, std::size_t slot) {
+    std::vector<std::size_t> open;
+    for (std::size_t k = 0; k < directions; ++k)
+      if (shares[slot * directions + k] > kLeast) open.push_back(k);
+    if (open.empty()) return;
+    std::vector<glm::vec3> sent(open.size(), glm::vec3(0.f));  // power by the weight of the direction
+    for (std::uint32_t i = medium.first_piece[slot]; i < medium.first_piece[slot + 1]; ++i) {
+      const CellPiece& piece = medium.pieces[i];
+      const float area = clumping[medium.material[piece.element] / 2] * piece.area;
+      const glm::vec3 &front = radiance[2 * std::size_t{piece.element}],
+                      &back = radiance[2 * std::size_t{piece.element} + 1];
+      for (std::size_t n = 0; n < open.size(); ++n) {
+        const float cosine = glm::dot(medium.normal[piece.element], down.along[open[n]]);
+        sent[n] += area * std::abs(cosine) * (cosine > 0.f ? front : back);
+      }
+    }
     const auto cell = static_cast<int>(medium.grid.cells[slot]);
     const glm::ivec3 size = medium.grid.size;
     const glm::vec3 middle =
         medium.grid.low +
         medium.grid.side * (glm::vec3(cell % size.x, cell / size.x % size.y, cell / (size.x * size.y)) + 0.5f);
-    for (std::size_t k = 0; k < directions; ++k) {
-      const float share = leaving(medium.grid, medium.grid.cells[slot], down.along[k],
-                                  [&](std::uint32_t other) { return extinction[std::size_t{other} * directions + k]; });
-      if (share > 0.f) ground.add(middle, down.along[k], share * sent[slot * directions + k]);
-    }
+    for (std::size_t n = 0; n < open.size(); ++n)
+      ground.add(middle, down.along[open[n]], (shares[slot * directions + open[n]] * down.weight[open[n]]) * sent[n]);
   });
 }
 

@@ -20,7 +20,11 @@ std::vector<glm::vec3> groundLight(const GroundGrid& grid, bool periodic, const 
 // On cells: what leaves each of them comes to the ground as far as those below let it through. `radiance` is that of
 // the medium's elements.
 //   clumping  of each kind of tree [1]
+//   shares    as groundShares() tells them
 std::vector<glm::vec3> groundLight(const GroundGrid& grid, const CellMedium& medium, std::span<const float> clumping,
-                                   std::span<const glm::vec3> radiance);
+                                   std::span<const float> shares, std::span<const glm::vec3> radiance);
+// Of what each slot of the medium sends in each direction that goes down, the share that leaves the cells [1]; it
+// follows from these alone.
+std::vector<float> groundShares(const CellMedium& medium, std::span<const float> clumping);
 
 }  // namespace sunfleck
