@@ -87,7 +87,7 @@ bool solvedOnLines(const Case& of) {
   // What iteration leaves is told for each source by itself, as an error of all sides' light, which in a box or a heap
   // of leaves is many times what comes in.
   EXPECT_NEAR(out, balance.in, 0.05 * balance.in);
-  EXPECT_EQ(result.converged, result.error_bound <= 1e-3);
+  EXPECT_EQ(result.converged, result.error_bound <= SolverEffort{}.error);
   return result.converged;
 }
 
