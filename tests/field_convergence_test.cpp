@@ -167,7 +167,7 @@ TEST(F4_LeafField, SmallLeavesBecomeAMedium) {
       double up = 0., absorbed = 0.;
       for (int seed = 1; seed <= layers; ++seed) {
         const RandomLayer layer{.leaf_side = side, .leaf_area_index = 4.f};
-        LeafField field({.exchange = {.axes = 256, .crossings = 2.f}});
+        LeafField field({.exchange = {.axes = 128, .crossings = 2.f}});
         field.setStand(std::array{std::shared_ptr<const TreeMesh>(
                            std::make_shared<TreeMesh>(randomLayer(layer, static_cast<std::uint64_t>(seed))))},
                        Stand{.period = layer.size});

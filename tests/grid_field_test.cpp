@@ -194,6 +194,29 @@ TEST(F17_GridField, KeepsWithinTheBoundOnItsError) {
   }
 }
 
+// Check the same of white leaves that repeat on white ground, whose light can leave upward alone and for which the
+// albedo bounds nothing.
+TEST(F17_GridField, BoundsTheErrorOfWhiteLeaves) {
+  Crown crown(0.8f, {.cells = 8, .ground = -1.7f}, glm::vec2(2.2f, 1.9f));
+  const std::vector<float> dark(1, 0.f), white(1, 1.f);
+  const GridLight light{.optics = {{{.leaf = {0.5f, 0.5f}}}},
+                        .direct = crown.bareSun(1),
+                        .entering = crown.field.evenSky(dark, dark, white)};
+  const GridSolution close = crown.field.solve(light, {.error = 1e-4f});
+  EXPECT_TRUE(close.told.empty()) << close.told;
+  for (const float error : {0.1f, 0.01f}) {
+    const GridSolution found = crown.field.solve(light, {.error = error});
+    EXPECT_TRUE(found.told.empty()) << found.told;
+    double off = 0., all = 0.;
+    for (std::size_t i = 0; i < found.irradiance.size(); ++i) {
+      off += double{crown.field.medium().area[i / 2]} * std::abs(double{found.irradiance[i] - close.irradiance[i]});
+      all += double{crown.field.medium().area[i / 2]} * double{close.irradiance[i]};
+    }
+    EXPECT_LE(off / all, found.error_bound + 1e-4);
+    EXPECT_NEAR(found.balance[0].upward, 1., double{error});
+  }
+}
+
 // Check that one thread finds the same bits as two.
 TEST(F17_GridField, IsTheSameForAnyNumberOfThreads) {
   const auto solved = [] {
