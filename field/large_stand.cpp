@@ -472,8 +472,6 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
         LitTree& tree = trees[i];
         const Turn& turn = *turns_[turn_of_tree_[now[i]]];
         tree.position = stand_.trees[now[i]].position;
-        tree.centre = centres[turn_of_tree_[now[i]]];
-        for (const glm::vec3& centre : tree.centre) tree.box.include(centre);
         tree.low = cellAt(grid, tree.position + turn.box.low);
         tree.size = cellAt(grid, tree.position + turn.box.high) - tree.low + 1;
         tree.own.assign(static_cast<std::size_t>(tree.size.x) * static_cast<std::size_t>(tree.size.y) *
@@ -489,8 +487,9 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
               turn.clusters.clusters->area[c] / all;
         }
         for (float& share : tree.own) share = std::min(share, 1.f);
-        around[i].assign(tree.centre.size() * 2 * bands, 0.f);
+        around[i].assign(kinds_[turn.kind]->elements.size() * 2 * bands, 0.f);
       });
+      const float pixel = kWallPixel * std::min({grid.side.x, grid.side.y, grid.side.z});
       CellsAlong along{.extinction = std::vector<float>(slots), .radiance = std::vector<float>(slots * bands)};
       for (std::uint32_t number = 0; number < directions.size(); ++number) {
         const Direction& s = directions[number];
@@ -514,15 +513,36 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
         std::array<float, kBands> of_sky{};
         for (std::size_t b = 0; b < bands; ++b) of_sky[b] = sky[number][static_cast<int>(lit_->bands[b])];
         const AroundCells outside{.sky = std::span(of_sky).first(bands), .ground = ground, .open = ground.empty() ? std::span<const float>() : std::span<const float>(open)};
+        // Of turned trees none or some of the directions are nearest to this one.
+        struct Walls {
+          std::size_t turn;
+          std::span<const std::uint32_t> sides;
+          std::size_t direction;
+          WallPixels pixels;
+        };
+        std::vector<Walls> walls;
+        std::vector<std::size_t> first_wall;
+        for (std::size_t t = 0; t < turns_.size(); ++t) {
+          first_wall.push_back(walls.size());
+          const OutsideLines& lines = kinds_[turns_[t]->kind]->outside;
+          for (std::size_t k = 0; k < directions.size() && !centres[t].empty(); ++k)
+            if (turns_[t]->nearest[k] == number)
+              walls.push_back({t,
+                               std::span(lines.side).subspan(lines.first[k], lines.first[k + 1] - lines.first[k]),
+                               k,
+                               {}});
+        }
+        first_wall.push_back(walls.size());
+        tbb::parallel_for(std::size_t{0}, walls.size(), [&](std::size_t i) {
+          Walls& wall = walls[i];
+          wall.pixels = wallPixels(centres[wall.turn], wall.sides,
+                                   turned(directions[wall.direction], turns_[wall.turn]->rotation), pixel);
+        });
         tbb::parallel_for(std::size_t{0}, now.size(), [&](std::size_t i) {
-          const Turn& turn = *turns_[turn_of_tree_[now[i]]];
-          const Kind& kind = *kinds_[turn.kind];
-          for (std::size_t k = 0; k < directions.size(); ++k) {
-            if (turn.nearest[k] != number) continue;
-            addWallLight(trees[i], grid, along, outside, turned(directions[k], turn.rotation),
-                         std::span(kind.outside.side).subspan(kind.outside.first[k], kind.outside.first[k + 1] - kind.outside.first[k]),
-                         kind.per_line, kWallPixel * std::min({grid.side.x, grid.side.y, grid.side.z}), bands, around[i]);
-          }
+          const std::size_t turn = turn_of_tree_[now[i]];
+          for (std::size_t w = first_wall[turn]; w < first_wall[turn + 1]; ++w)
+            addWallLight(trees[i], grid, along, outside, walls[w].pixels, walls[w].sides,
+                         kinds_[turns_[turn]->kind]->per_line, bands, around[i]);
         });
       }
       costs_[kWalls].made += now.size();

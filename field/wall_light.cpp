@@ -10,7 +10,7 @@ namespace sunfleck {
 namespace {
 
 constexpr std::size_t kMostBands = 4;
-constexpr float kDark = 1e-4f;  // share of the light that is no longer followed [1]
+constexpr float kDark = 1e-3f;  // share of the light that is no longer followed [1]
 
 using Bands = std::array<float, kMostBands>;
 
@@ -92,51 +92,50 @@ OutsideLines outsideLines(const LineExchange& exchange) {
   return lines;
 }
 
+WallPixels wallPixels(std::span<const glm::vec3> centre, std::span<const std::uint32_t> sides, const Direction& along,
+                      float pixel) {
+  const Axes axes = axesAlong(along);
+  WallPixels pixels{.along = along, .of_line = std::vector<std::uint32_t>(sides.size()), .begin = {}};
+  std::vector<glm::vec2> across(sides.size());
+  glm::vec2 low(std::numeric_limits<float>::infinity()), high(-low);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    across[i] = {glm::dot(centre[sides[i] / 2], axes.right), glm::dot(centre[sides[i] / 2], axes.up)};
+    low = glm::min(low, across[i]);
+    high = glm::max(high, across[i]);
+  }
+  if (sides.empty()) return pixels;
+  const glm::ivec2 size = glm::ivec2((high - low) / pixel) + 1;
+  constexpr std::uint32_t none = ~0u;
+  std::vector<std::uint32_t> number(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), none);
+  std::vector<float> lines;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const glm::ivec2 at((across[i] - low) / pixel);
+    std::uint32_t& of_pixel = number[static_cast<std::size_t>(at.y * size.x + at.x)];
+    if (of_pixel == none) {
+      of_pixel = static_cast<std::uint32_t>(lines.size());
+      lines.push_back(0.f);
+      pixels.begin.emplace_back(0.f);
+    }
+    pixels.of_line[i] = of_pixel;
+    pixels.begin[of_pixel] += centre[sides[i] / 2];
+    lines[of_pixel] += 1.f;
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) pixels.begin[i] /= lines[i];
+  return pixels;
+}
+
 // (F30)
 void addWallLight(const LitTree& tree, const SweepGrid& grid, const CellsAlong& cells, const AroundCells& around,
-                  const Direction& along, std::span<const std::uint32_t> sides, std::span<const float> per_line,
-                  float pixel, std::size_t bands, std::span<float> irradiance) {
-  const Axes axes = axesAlong(along);
-  glm::vec2 low(std::numeric_limits<float>::infinity()), high(-low);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 p(corner & 1 ? tree.box.high.x : tree.box.low.x, corner & 2 ? tree.box.high.y : tree.box.low.y,
-                      corner & 4 ? tree.box.high.z : tree.box.low.z);
-    const glm::vec2 across(glm::dot(p, axes.right), glm::dot(p, axes.up));
-    low = glm::min(low, across);
-    high = glm::max(high, across);
-  }
-  const glm::ivec2 size = glm::ivec2((high - low) / pixel) + 1;
-  struct Pixel {
-    float way = 0.f;  // of the beginnings, sum along the light [m]
-    std::uint32_t lines = 0;
-    Bands light{};
-  };
-  std::vector<Pixel> pixels(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
-  std::vector<std::uint32_t> of_line(sides.size());
+                  const WallPixels& pixels, std::span<const std::uint32_t> sides, std::span<const float> per_line,
+                  std::size_t bands, std::span<float> irradiance) {
+  std::vector<Bands> light(pixels.begin.size());
+  for (std::size_t i = 0; i < light.size(); ++i)
+    light[i] = comesTo(tree.position + pixels.begin[i], -pixels.along, tree, grid, cells, around, bands);
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    const glm::vec3& centre = tree.centre[sides[i] / 2];
-    const glm::ivec2 at = glm::clamp(
-        glm::ivec2((glm::vec2(glm::dot(centre, axes.right), glm::dot(centre, axes.up)) - low) / pixel), glm::ivec2(0),
-        size - 1);
-    of_line[i] = static_cast<std::uint32_t>(at.y * size.x + at.x);
-    Pixel& of_pixel = pixels[of_line[i]];
-    of_pixel.way += glm::dot(centre, along);
-    ++of_pixel.lines;
-  }
-  for (int y = 0; y < size.y; ++y)
-    for (int x = 0; x < size.x; ++x) {
-      Pixel& of_pixel = pixels[static_cast<std::size_t>(y * size.x + x)];
-      if (of_pixel.lines == 0) continue;
-      const glm::vec2 across = low + pixel * (glm::vec2(x, y) + 0.5f);
-      const glm::vec3 begin = tree.position + across.x * axes.right + across.y * axes.up +
-                              of_pixel.way / static_cast<float>(of_pixel.lines) * along;
-      of_pixel.light = comesTo(begin, -along, tree, grid, cells, around, bands);
-    }
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const Pixel& of_pixel = pixels[of_line[i]];
+    const Bands& of_pixel = light[pixels.of_line[i]];
     const float share = per_line[sides[i] / 2];
-    for (std::size_t band = 0; band < bands; ++band)
-      irradiance[sides[i] * bands + band] += share * of_pixel.light[band];
+    float* const to = irradiance.data() + sides[i] * bands;
+    for (std::size_t band = 0; band < bands; ++band) to[band] += share * of_pixel[band];
   }
 }
 
