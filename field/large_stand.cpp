@@ -17,6 +17,7 @@
 
 #include "core/available_memory.hpp"
 #include "core/require.hpp"
+#include "field/field_input.hpp"
 #include "field/field_solver.hpp"
 #include "sky/sky_shares.hpp"
 
@@ -27,6 +28,7 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr std::size_t kTogether = 4;       // trees of a kind that are solved side by side
 constexpr float kClusterShare = 0.4f;      // side of the cells that gather clusters, in those of the stand [1]
 constexpr float kWallPixel = 0.5f;         // of the pictures of light at a tree's walls, in sides of cells [1]
+constexpr int kFarGroup = 3;               // cells of clusters along that of a group of a far tree
 constexpr double kLightMemory = 0.5e9;     // that light at walls may take at once [byte]
 
 enum Cost : std::size_t { kKinds, kCells, kSun, kCellSolution, kWalls, kTrees, kCosts };
@@ -56,6 +58,8 @@ struct LargeStandField::Kind {
   std::vector<float> per_line;  // irradiance of each element by radiance 1 on one line
   double escape = 0.;           // share of the lines from its leaves that leave the tree
   LeafClusters clusters;
+  ClusterGroups groups;
+  std::vector<std::uint32_t> group_side;  // of each side of each element
   Bounds box;
 };
 
@@ -78,6 +82,7 @@ struct LargeStandField::Lit {
   std::vector<std::size_t> bands;                          // that differ
   std::array<std::size_t, kBands> as{};                    // of which of those each band is
   std::vector<GridSolution> solutions;                     // of those
+  std::vector<std::vector<float>> scattered;               // of those, irradiance of elements' sides by all but the suns
 };
 
 LargeStandField::LargeStandField(const LargeStandEffort& effort) : effort_(effort) {
@@ -91,8 +96,10 @@ std::vector<ProductCost> LargeStandField::costs() const {
 }
 
 void LargeStandField::setStand(std::span<const std::shared_ptr<const TreeMesh>> kinds, const Stand& stand) {
-  if (stand == stand_ && std::equal(kinds.begin(), kinds.end(), meshes_.begin(), meshes_.end())) return;
-  if (!std::equal(kinds.begin(), kinds.end(), meshes_.begin(), meshes_.end())) kinds_.clear();
+  requireStand(kinds, stand);
+  const bool same_kinds = std::ranges::equal(kinds, meshes_);
+  if (stand == stand_ && same_kinds) return;
+  if (!same_kinds) kinds_.clear();
   meshes_.assign(kinds.begin(), kinds.end());
   stand_ = stand;
   lighting_.reset();
@@ -101,10 +108,14 @@ void LargeStandField::setStand(std::span<const std::shared_ptr<const TreeMesh>> 
 
 void LargeStandField::makeKinds() {
   const Stopwatch watch(costs_[kKinds].seconds);
-  if (kinds_.empty()) {
-    kinds_.resize(meshes_.size());
+  kinds_.resize(meshes_.size());
+  {
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
-      if (std::ranges::none_of(stand_.trees, [&](const Placement& tree) { return tree.kind == i; })) continue;
+      if (std::ranges::none_of(stand_.trees, [&](const Placement& tree) { return tree.kind == i; })) {
+        kinds_[i] = nullptr;
+        continue;
+      }
+      if (kinds_[i]) continue;
       Kind& kind = *(kinds_[i] = std::make_unique<Kind>());
       ++costs_[kKinds].made;
       kind.elements = fieldElements(*meshes_[i], effort_.elements);
@@ -225,6 +236,10 @@ void LargeStandField::makeCells() {
     if (!kinds_[i]) return;
     Kind& kind = *kinds_[i];
     kind.clusters = leafClusters(kind.elements, kClusterShare * side);
+    kind.groups = clusterGroups(kind.clusters, kFarGroup);
+    kind.group_side.clear();
+    for (const std::uint32_t side : kind.clusters.of_side)
+      kind.group_side.push_back(2 * kind.groups.of_cluster[side / 2] + side % 2);
     stats_.clumping[i] = clumpingByEscape(turnedClusters(kind.clusters, 0.f), kind.box, side, kind.escape);
   });
   trees_.clear();
@@ -386,6 +401,17 @@ void LargeStandField::solveCells() {
     if (!solution.told.empty()) result_.converged = false;
     stats_.cell_iterations = std::max(stats_.cell_iterations, solution.iterations);
     stats_.cell_error = std::max(stats_.cell_error, solution.error_bound);
+    std::vector<float>& scattered = lit_->scattered.emplace_back(light.direct.size());
+    for (std::size_t i = 0; i < medium.area.size(); ++i) {
+      const float front = solution.irradiance[2 * i], back = solution.irradiance[2 * i + 1];
+      if (medium.material[i] % 2 == 1) {  // of its whole surface
+        scattered[2 * i] = scattered[2 * i + 1] =
+            std::max(0.f, front - (light.direct[2 * i] + light.direct[2 * i + 1]));
+        continue;
+      }
+      scattered[2 * i] = std::max(0.f, front - light.direct[2 * i]);
+      scattered[2 * i + 1] = std::max(0.f, back - light.direct[2 * i + 1]);
+    }
     lit_->solutions.push_back(std::move(solution));
   }
   for (std::size_t band = 0; band < kBands; ++band) {
@@ -648,37 +674,87 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
   }
 }
 
-void LargeStandField::requireMemory(std::span<const std::size_t> seen) {
+// What comes to the groups of a far tree's leaves is the mean of what comes to their clusters' elements in the cells.
+void LargeStandField::tellFar(std::span<const std::size_t> far) {
+  const CellMedium& medium = cells_->medium();
+  far_sides_.assign(stand_.trees.size(), {});
+  tbb::parallel_for(std::size_t{0}, far.size(), [&](std::size_t i) {
+    const ClusteredTree& tree = trees_[far[i]];
+    const Kind& kind = *kinds_[tree.kind];
+    const std::vector<std::uint32_t> of_clusters = elementSides(*medium_, medium, tree);
+    std::vector<glm::vec3> sums(2 * kind.groups.count, glm::vec3(0.f));
+    std::vector<float> areas(kind.groups.count);
+    for (std::size_t c = 0; c < of_clusters.size(); ++c) {
+      const std::uint32_t group = kind.groups.of_cluster[c];
+      const float area = kind.clusters.area[c];
+      areas[group] += area;
+      for (std::uint32_t side = 0; side < 2; ++side)
+        for (std::size_t band = 0; band < kBands; ++band) {
+          const std::vector<float>& scattered = lit_->scattered[lit_->as[band]];
+          sums[2 * group + side][static_cast<int>(band)] += area * scattered[of_clusters[c] ^ side];
+        }
+    }
+    for (std::size_t side = 0; side < sums.size(); ++side) sums[side] /= areas[side / 2];
+    far_sides_[far[i]] = std::move(sums);
+  });
+}
+
+std::span<const std::uint32_t> LargeStandField::farSidesOf(std::uint32_t kind) const {
+  return kinds_[kind] ? std::span<const std::uint32_t>(kinds_[kind]->group_side) : std::span<const std::uint32_t>();
+}
+
+const FieldElements& LargeStandField::elements(std::uint32_t kind) const {
+  return kinds_[kind]->elements;
+}
+
+void LargeStandField::requireMemory(std::span<const std::size_t> seen, std::span<const std::size_t> far) {
+  const auto bands = static_cast<double>(kBands), suns = static_cast<double>(lighting_->suns.size());
   double bytes = 0., light = 0.;
   for (const std::size_t tree : seen) {
     const std::uint32_t kind = stand_.trees[tree].kind;
     const double sides = 2. * static_cast<double>(kinds_[kind]->elements.size());
-    bytes += sizeof(LeafLight) * static_cast<double>(meshes_[kind]->leaf_count) +
-             4. * sides * static_cast<double>(lighting_->suns.size());
-    light += 4. * kBands * sides;
+    bytes += sizeof(LeafLight) * static_cast<double>(meshes_[kind]->leaf_count) + 4. * sides * suns;
+    light += 4. * bands * sides;
   }
-  bytes += std::min(light, kLightMemory);
+  for (const std::size_t tree : far)
+    bytes += 2. * sizeof(glm::vec3) * static_cast<double>(kinds_[stand_.trees[tree].kind]->groups.count);
+  bytes += std::min(light, kLightMemory) + cells_->memoryBytes(1);
   for (const auto& kind : kinds_)
-    if (kind) bytes += static_cast<double>(kind->exchange.memoryBytes());
+    if (kind) bytes += static_cast<double>(kind->exchange.memoryBytes() + 4 * kind->outside.side.size());
   stats_.memory = bytes;
-  require(bytes <= std::min(effort_.most_memory, availableMemory()), "light field of trees in view, memory [MB]",
-          std::ceil(1e-6 * bytes), fmt::format("at most {:.0f}: fewer trees in view", 1e-6 * std::min(effort_.most_memory, availableMemory())));
+  const double most = std::min(effort_.most_memory, availableMemory());
+  require(bytes <= most, fmt::format("light field of {} trees in view: memory [MB]", seen.size() + far.size()),
+          std::ceil(1e-6 * bytes), fmt::format("at most {:.0f}: fewer trees in view", 1e-6 * most));
 }
 
-const FieldResult& LargeStandField::solve(const FieldLighting& lighting, std::span<const std::size_t> seen) {
+const FieldResult& LargeStandField::solve(const FieldLighting& lighting, std::span<const std::size_t> seen,
+                                          std::span<const std::size_t> far) {
   require(!meshes_.empty(), "number of trees", 0, "at least 1: setStand first");
+  requireLighting(lighting, meshes_.size());
   if (cells_stale_) {
     makeKinds();
     makeCells();
     cells_stale_ = false;
+    lighting_.reset();
   }
+  const bool same_light = lighting_ && lighting_->suns == lighting.suns && lighting_->sky == lighting.sky &&
+                          lighting_->kinds == lighting.kinds && lighting_->ground_albedo == lighting.ground_albedo;
+  if (same_light && std::ranges::equal(seen, seen_) && std::ranges::equal(far, far_)) return result_;
   lighting_ = lighting;
-  requireMemory(seen);
-  result_ = {};
-  result_.trees.resize(stand_.trees.size());
-  makeSuns(seen);
-  solveCells();
-  solveTrees(seen);
+  seen_.assign(seen.begin(), seen.end());
+  far_.assign(far.begin(), far.end());
+  try {
+    requireMemory(seen, far);
+    result_ = {};
+    result_.trees.resize(stand_.trees.size());
+    makeSuns(seen);
+    solveCells();
+    solveTrees(seen);
+    tellFar(far);
+  } catch (...) {
+    lighting_.reset();
+    throw;
+  }
   return result_;
 }
 

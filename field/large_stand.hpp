@@ -59,7 +59,16 @@ class LargeStandField {
   // stand in cells, per band. Throws InvalidInput as LeafField::solve() does, and before work begins where memory would
   // not suffice, with the figure.
   //   seen  numbers of trees, each once
-  const FieldResult& solve(const FieldLighting& lighting, std::span<const std::size_t> seen);
+  //   far   those of which cells suffice, as they are too far to see leaves
+  const FieldResult& solve(const FieldLighting& lighting, std::span<const std::size_t> seen,
+                           std::span<const std::size_t> far = {});
+
+  // Of a tree that is far: irradiance of the front and the back of each of its groups of leaves by all but the suns'
+  // direct light, per band [1]; and of each kind the side of a group, 2 group or 2 group + 1, that a side of an element
+  // belongs to. Empty for others.
+  std::span<const glm::vec3> farSides(std::size_t tree) const { return far_sides_[tree]; }
+  std::span<const std::uint32_t> farSidesOf(std::uint32_t kind) const;
+  const FieldElements& elements(std::uint32_t kind) const;  // of a kind of which there is a tree
 
   const LargeStandStats& stats() const { return stats_; }
   std::vector<ProductCost> costs() const;
@@ -74,7 +83,8 @@ class LargeStandField {
   void makeSuns(std::span<const std::size_t> seen);
   void solveCells();
   void solveTrees(std::span<const std::size_t> seen);
-  void requireMemory(std::span<const std::size_t> seen);
+  void tellFar(std::span<const std::size_t> far);
+  void requireMemory(std::span<const std::size_t> seen, std::span<const std::size_t> far);
 
   LargeStandEffort effort_;
   Stand stand_{.trees = {}};
@@ -88,6 +98,8 @@ class LargeStandField {
   std::optional<StandMedium> medium_;
   std::optional<GridField> cells_;
   std::unique_ptr<Lit> lit_;
+  std::vector<std::size_t> seen_, far_;  // that the result is of
+  std::vector<std::vector<glm::vec3>> far_sides_;
   FieldResult result_;
   LargeStandStats stats_;
   std::vector<ProductCost> costs_;

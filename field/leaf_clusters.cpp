@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <map>
 #include <tuple>
 
 namespace sunfleck {
@@ -81,8 +82,23 @@ LeafClusters leafClusters(const FieldElements& elements, float side) {
     clusters.normal.emplace_back(glm::normalize(normal));
     clusters.area.push_back(static_cast<float>(area));
     clusters.wood.push_back(placed[begin].wood);
+    clusters.facing.push_back(placed[begin].facing.axis);
+    clusters.cell.push_back(placed[begin].cell);
   }
   return clusters;
+}
+
+ClusterGroups clusterGroups(const LeafClusters& clusters, int cells) {
+  ClusterGroups groups;
+  std::map<std::tuple<int, int, int, std::uint8_t, std::uint8_t>, std::uint32_t> known;
+  for (std::size_t i = 0; i < clusters.size(); ++i) {
+    const glm::ivec3 cell(glm::floor(glm::vec3(clusters.cell[i]) / static_cast<float>(cells)));
+    const auto number = static_cast<std::uint32_t>(known.size());
+    const auto key = std::tuple_cat(keyOf(cell), std::tuple(clusters.wood[i], clusters.facing[i]));
+    groups.of_cluster.push_back(known.try_emplace(key, number).first->second);
+  }
+  groups.count = known.size();
+  return groups;
 }
 
 std::size_t cellsTaken(const FieldElements& elements, float side) {

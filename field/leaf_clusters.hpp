@@ -26,12 +26,21 @@ struct LeafClusters {
   std::vector<glm::vec3> normal;        // of the front; the mean over the area, a unit vector
   std::vector<float> area;              // seen from either side [m^2]: of wood half of its surface
   std::vector<std::uint8_t> wood;       // whether it is wood
+  std::vector<std::uint8_t> facing;     // the axis along which it faces
+  std::vector<glm::ivec3> cell;         // that it lies in
   std::vector<std::uint32_t> of_side;   // of each side of each element: 2 cluster (front) or 2 cluster + 1 (back)
   std::size_t size() const { return area.size(); }
 };
 
 //   side  of the cells [m], > 0; their corners lie at whole multiples of it
 LeafClusters leafClusters(const FieldElements& elements, float side);
+
+// Clusters gathered further, of so many cells along each axis.
+struct ClusterGroups {
+  std::vector<std::uint32_t> of_cluster;
+  std::size_t count = 0;
+};
+ClusterGroups clusterGroups(const LeafClusters& clusters, int cells);
 
 // Cells of a side that the elements' centres lie in.
 std::size_t cellsTaken(const FieldElements& elements, float side);

@@ -10,55 +10,13 @@
 #include <string>
 
 #include "core/require.hpp"
+#include "field/field_input.hpp"
 #include "sky/sky_shares.hpp"
 
 namespace sunfleck {
 namespace {
 
 constexpr std::array<std::size_t, 1> kOnly{0};
-
-void requireStand(std::span<const std::shared_ptr<const TreeMesh>> kinds, const Stand& stand) {
-  require(!stand.trees.empty(), "number of trees", stand.trees.size(), "at least 1");
-  for (std::size_t i = 0; i < stand.trees.size(); ++i) {
-    const Placement& tree = stand.trees[i];
-    const std::string name = "tree " + std::to_string(i + 1);
-    require(tree.kind < kinds.size(), name + " kind", tree.kind, "below the number of kinds");
-    for (int axis = 0; axis < 3; ++axis)
-      require(std::abs(tree.position[axis]) <= 1e6f, name + " position", tree.position[axis],
-              "finite and at most 1e6 m in size");
-    require(std::isfinite(tree.rotation), name + " rotation", tree.rotation, "finite");
-    require(kinds[tree.kind]->leaf_count > 0, name + " number of leaves", kinds[tree.kind]->leaf_count, "at least 1");
-    require(kinds[tree.kind]->leaf_cuts.empty(), name + " leaf masks", kinds[tree.kind]->masks.size(),
-            "0: the field would take the whole triangles");
-  }
-  if (stand.period)
-    for (int axis = 0; axis < 2; ++axis)
-      require((*stand.period)[axis] > 0.f && (*stand.period)[axis] <= 1e6f, "period", (*stand.period)[axis],
-              "above 0 and at most 1e6 m");
-}
-
-void requireShare(float value, const std::string& what) {
-  require(value >= 0.f && value <= 1.f, what, value, "0 .. 1");
-}
-
-void requireLighting(const FieldLighting& lighting, std::size_t kinds) {
-  require(lighting.suns.size() <= LeafField::kMostSuns, "number of suns", lighting.suns.size(), "at most 4");
-  require(lighting.kinds.size() == kinds, "number of kinds with optics", lighting.kinds.size(), "that of the stand");
-  for (const FieldSun& sun : lighting.suns) {
-    require(std::abs(glm::length(sun.along) - 1.f) < 1e-3f, "length of the sunlight's direction",
-            glm::length(sun.along), "1");
-    require(sun.along.z < 0.f, "z of the sunlight's direction", sun.along.z, "below 0");
-    for (int band = 0; band < kBands; ++band)
-      require(sun.irradiance[band] >= 0.f && std::isfinite(sun.irradiance[band]), "sun irradiance",
-              sun.irradiance[band], "finite and >= 0");
-  }
-  for (const FieldKind& kind : lighting.kinds)
-    for (int band = 0; band < kBands; ++band) {
-      validate(kind.leaf[static_cast<std::size_t>(band)]);
-      requireShare(kind.wood_reflectance[band], "wood reflectance");
-    }
-  for (int band = 0; band < kBands; ++band) requireShare(lighting.ground_albedo[band], "ground albedo");
-}
 
 // Its direction by the direction that a tree turns to.
 glm::vec3 turned(const glm::vec3& vector, float cosine, float sine) {

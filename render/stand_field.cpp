@@ -1,7 +1,9 @@
 #include "render/stand_field.hpp"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <map>
+#include <numeric>
 
 #include "core/require.hpp"
 #include "core/revision.hpp"
@@ -12,7 +14,9 @@ namespace sunfleck {
 namespace {
 
 constexpr int kWoodCells = 16;  // along the longest side of a tree
-constexpr std::size_t kMostFieldLeaves = 2'000'000;
+constexpr std::size_t kMostAsOne = 2'000'000;        // leaves of a stand whose trees are solved together
+constexpr std::size_t kMostNear = 10'000'000;        // of those trees of a picture that have a place for each
+constexpr std::size_t kMostFieldLeaves = 40'000'000;  // of which it can be told: about 100 bytes for each
 
 FieldLighting lightingOf(const Scene& scene) {
   const SunAndSky shining = sunAndSky(scene);
@@ -42,7 +46,7 @@ void requireField(const Scene& scene) {
           "at most " + std::to_string(kMostFieldLeaves) + " for the model field (others take more)");
 }
 
-StandField::StandField(const FieldEffort& effort) : field_(effort) {}
+StandField::StandField(const FieldEffort& effort) : effort_(effort), field_(effort) {}
 
 StandField::Kind StandField::kindOf(const std::shared_ptr<const TreeMesh>& mesh) {
   Kind kind{.mesh = mesh, .places = {}, .leaves_around = {}};
@@ -75,22 +79,78 @@ StandField::Kind StandField::kindOf(const std::shared_ptr<const TreeMesh>& mesh)
   return kind;
 }
 
-void StandField::update(const Scene& scene) {
-  requireField(scene);
+std::vector<ProductCost> StandField::costs() const {
+  std::vector<ProductCost> costs = field_.costs();
+  if (large_)
+    for (ProductCost& cost : large_->costs()) costs.push_back(std::move(cost));
+  return costs;
+}
+
+// (F28) Trees in the order of their distance from the camera: leaf by leaf as many as there is room for, then by cells.
+void StandField::updateLarge(const Scene& scene, std::span<const std::shared_ptr<const TreeMesh>> meshes,
+                             std::optional<std::span<const std::size_t>> trees) {
+  if (!trees) requireField(scene);
+  if (!large_)
+    large_ = std::make_unique<LargeStandField>(LargeStandEffort{
+        .elements = effort_.elements, .exchange = effort_.exchange, .solver = effort_.solver, .cells = {}});
+  std::vector<std::size_t> seen(scene.stand.trees.size()), far;
+  std::iota(seen.begin(), seen.end(), std::size_t{0});
+  if (trees) {
+    seen.assign(trees->begin(), trees->end());
+    const Camera camera = cameraOf(scene);
+    const glm::vec3 from = camera.perspective() ? eyeOf(camera) : camera.target;
+    std::ranges::stable_sort(seen, {}, [&](std::size_t tree) {
+      const glm::vec3 away = scene.stand.trees[tree].position - from;
+      return glm::dot(away, away);
+    });
+    std::size_t leaves = 0, near = 0;
+    for (; near < seen.size() && leaves <= kMostNear; ++near)
+      leaves += scene.kindOf(scene.stand.trees[seen[near]]).mesh->leaf_count;
+    far.assign(seen.begin() + static_cast<std::ptrdiff_t>(near), seen.end());
+    seen.resize(near);
+  }
+  large_->setStand(meshes, scene.stand);
+  result_ = &large_->solve(lightingOf(scene), seen, far);
+  far_.assign(far.empty() ? 0 : scene.stand.trees.size(), false);
+  for (const std::size_t tree : far) far_[tree] = true;
+}
+
+void StandField::update(const Scene& scene, std::optional<std::span<const std::size_t>> trees) {
   std::vector<std::shared_ptr<const TreeMesh>> meshes;
   for (const TreeKind& kind : scene.kinds) meshes.push_back(kind.mesh);
   result_ = nullptr;
-  field_.setStand(meshes, scene.stand);
-  result_ = &field_.solve(lightingOf(scene));
+  far_.clear();
+  const bool large = leavesOf(scene) > kMostAsOne;
+  if (large) {
+    updateLarge(scene, meshes, trees);
+  } else {
+    field_.setStand(meshes, scene.stand);
+    result_ = &field_.solve(lightingOf(scene));
+  }
   kinds_.resize(meshes.size());
-  for (std::size_t i = 0; i < meshes.size(); ++i)
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (kinds_[i].mesh != meshes[i]) kinds_[i] = kindOf(meshes[i]);
+    kinds_[i].far_places.clear();
+    const auto of_sides = far_.empty() ? std::span<const std::uint32_t>() : large_->farSidesOf(static_cast<std::uint32_t>(i));
+    if (of_sides.empty()) continue;
+    // A place has the light of its front, then of its back: those of a group, or exchanged.
+    const FieldElements& elements = large_->elements(static_cast<std::uint32_t>(i));
+    for (const auto* of_triangles : {&elements.of_leaf_triangle, &elements.of_wood_triangle})
+      for (const std::uint32_t element : *of_triangles) kinds_[i].far_places.push_back(of_sides[2 * element]);
+  }
   sides_.resize(scene.stand.trees.size());
   revision_ = newRevisions();
   for (std::size_t tree = 0; tree < sides_.size(); ++tree) {
     const Kind& kind = kinds_[scene.stand.trees[tree].kind];
     std::vector<glm::vec3>& sides = sides_[tree];
     sides.clear();
+    if (isFar(tree)) {
+      const std::span<const glm::vec3> of_groups = large_->farSides(tree);
+      for (std::size_t side = 0; side < of_groups.size(); ++side)
+        sides.insert(sides.end(), {of_groups[side], of_groups[side ^ 1]});
+      continue;
+    }
+    if (result_->trees[tree].empty()) continue;
     for (const LeafLight& leaf : result_->trees[tree]) {
       glm::vec3 front, back;
       for (int band = 0; band < kBands; ++band) {

@@ -3,16 +3,18 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "field/large_stand.hpp"
 #include "field/leaf_field.hpp"
 #include "render/scene.hpp"
 
 namespace sunfleck {
 
-// Whether the trees of a scene, together, have no more leaves than the light field is computed of; throws InvalidInput
-// where they have.
+// Whether the trees of a scene, together, have no more leaves than the light field can tell of one by one; throws
+// InvalidInput where they have. Of those of a picture it takes any number.
 bool fieldFits(const Scene& scene);
 void requireField(const Scene& scene);
 
@@ -22,18 +24,24 @@ class StandField {
  public:
   explicit StandField(const FieldEffort& effort = {});
 
-  // Brings it up to date for the scene. Throws InvalidInput as LeafField, requireField() and sunAndSky() do.
-  void update(const Scene& scene);
+  // Brings it up to date for the scene. A stand of more leaves than can be solved as one is solved in cells, and leaf by
+  // leaf only where trees are asked for (F28). Throws InvalidInput as LeafField, LargeStandField, requireField() and
+  // sunAndSky() do.
+  //   trees  that a picture by the scene's camera shows; none: all. Of very many those nearest to the camera have a
+  //          place for each leaf, the others for what lies together and faces alike.
+  void update(const Scene& scene, std::optional<std::span<const std::size_t>> trees = std::nullopt);
 
-  // Of each triangle of a kind of the scene, leaves before wood, its place.
+  // Of each triangle of a kind of the scene, leaves before wood, its place, and that in trees that are far.
   std::span<const std::uint32_t> places(std::uint32_t kind) const { return kinds_[kind].places; }
+  std::span<const std::uint32_t> farPlaces(std::uint32_t kind) const { return kinds_[kind].far_places; }
+  bool isFar(std::size_t tree) const { return !far_.empty() && far_[tree]; }
   // Irradiance of the front and the back of each place of a tree, per band [1]; another revision whenever it is
   // another.
   std::span<const glm::vec3> sides(std::size_t tree) const { return sides_[tree]; }
   std::uint64_t revision() const { return revision_; }
 
   const FieldResult& result() const { return *result_; }
-  std::vector<ProductCost> costs() const { return field_.costs(); }
+  std::vector<ProductCost> costs() const;
 
  private:
   // The wood of a kind is lit as the leaves around it.
@@ -41,10 +49,17 @@ class StandField {
     std::shared_ptr<const TreeMesh> mesh;
     std::vector<std::uint32_t> places;
     std::vector<std::vector<std::uint32_t>> leaves_around;  // of each place beyond the leaves
+    std::vector<std::uint32_t> far_places;
   };
   static Kind kindOf(const std::shared_ptr<const TreeMesh>& mesh);
 
+  void updateLarge(const Scene& scene, std::span<const std::shared_ptr<const TreeMesh>> meshes,
+                   std::optional<std::span<const std::size_t>> trees);
+
+  FieldEffort effort_;
   LeafField field_;
+  std::unique_ptr<LargeStandField> large_;  // made when it is first needed
+  std::vector<char> far_;                   // of each tree, where any is
   const FieldResult* result_ = nullptr;
   std::vector<Kind> kinds_;
   std::vector<std::vector<glm::vec3>> sides_;

@@ -360,7 +360,7 @@ void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
   updateEnvironment(instances, needs, progress);
   if (!needs.field) return;
   if (!field_) field_ = std::make_unique<StandField>();
-  field_->update(scene);
+  field_->update(scene, trees);
   field_told_ = true;
 }
 
