@@ -93,7 +93,9 @@ int main(int argc, char** argv) {
     LargeStandField field(effort);
     const Elapsed elapsed;
     field.setStand(meshes, scene.stand);
-    const FieldResult& result = field.solve(lighting, seen);
+    std::vector<std::size_t> far;
+    for (std::size_t i = seen.size(); i < scene.stand.trees.size(); ++i) far.push_back(i);
+    const FieldResult& result = field.solve(lighting, seen, far);
     fmt::print("large: {:.2f} s wall {:.2f} s cpu; cell {:.2f} m, {} cells {} elements, {} cell its (bound {:.1e}), its {} bound {:.1e}", elapsed.seconds(), elapsed.cpuSeconds(),
                field.stats().cell_side, field.stats().cells, field.stats().elements, field.stats().cell_iterations, field.stats().cell_error, result.iterations, result.error_bound);
     for (const float omega : field.stats().clumping) fmt::print(" omega {:.2f}", omega);
@@ -153,6 +155,24 @@ int main(int argc, char** argv) {
                    100. * *errors.bias, 100. * *categoryNoise(truth.leaf_irradiance, truth.leaf_standard_error, groups));
       };
       tell("large", leafIrradiance(result, scene, 0));
+      {
+        LargeStandField cells(effort);
+        cells.setStand(meshes, scene.stand);
+        cells.solve(lighting, {}, seen);
+        FieldResult by_cells = result;
+        for (const std::size_t tree : seen) {
+          const std::uint32_t kind = scene.stand.trees[tree].kind;
+          const FieldElements& elements = cells.elements(kind);
+          std::vector<float> front(elements.size()), back(elements.size());
+          for (std::size_t e = 0; e < elements.size(); ++e) {
+            front[e] = cells.farSides(tree)[cells.farSidesOf(kind)[2 * e]].x;
+            back[e] = cells.farSides(tree)[cells.farSidesOf(kind)[2 * e + 1]].x;
+          }
+          const auto f = leafMeans(elements, meshes[kind]->leaf_count, front), k = leafMeans(elements, meshes[kind]->leaf_count, back);
+          for (std::size_t leaf = 0; leaf < f.size(); ++leaf) by_cells.trees[tree][leaf].scattered[0] = {f[leaf], k[leaf]};
+        }
+        tell("far", leafIrradiance(by_cells, scene, 0));
+      }
       if (whole) {
         LeafField all;
         all.setStand(meshes, scene.stand);

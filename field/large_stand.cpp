@@ -25,11 +25,11 @@ namespace sunfleck {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr std::size_t kTogether = 4;       // trees of a kind that are solved side by side
-constexpr float kClusterShare = 0.4f;      // side of the cells that gather clusters, in those of the stand [1]
-constexpr float kWallPixel = 0.5f;         // of the pictures of light at a tree's walls, in sides of cells [1]
-constexpr int kFarGroup = 3;               // cells of clusters along that of a group of a far tree
-constexpr double kLightMemory = 0.5e9;     // that light at walls may take at once [byte]
+constexpr std::size_t kTogether = 4;    // trees of a kind that are solved side by side
+constexpr float kClusterShare = 0.4f;   // side of the cells that gather clusters, in those of the stand [1]
+constexpr float kWallPixel = 0.5f;      // of the pictures of light at a tree's walls, in sides of cells [1]
+constexpr int kFarGroup = 3;            // cells of clusters along that of a group of a far tree
+constexpr double kLightMemory = 0.5e9;  // that light at walls may take at once [byte]
 
 enum Cost : std::size_t { kKinds, kCells, kSun, kCellSolution, kWalls, kTrees, kCosts };
 
@@ -68,21 +68,21 @@ struct LargeStandField::Turn {
   std::uint32_t kind = 0;
   float rotation = 0.f;
   TurnedClusters clusters;
-  Bounds box;                                                      // of leaves and wood
-  std::vector<SunPicture> pictures;  // of each sun
+  Bounds box;                          // of leaves and wood
+  std::vector<SunPicture> pictures;    // of each sun
   std::vector<std::uint32_t> nearest;  // of each direction of the exchange, as it is turned, the nearest that is not
 };
 
 // What the light of the present suns, sky and optics makes.
 struct LargeStandField::Lit {
-  std::vector<SunLines> lines;                             // of each sun
-  std::vector<std::vector<std::uint32_t>> of_cells;        // of each sun, lines that come to each element's sides
-  std::vector<std::vector<std::uint32_t>> shaded;          // of each sun, lines that do not come to each column's ground
+  std::vector<SunLines> lines;                       // of each sun
+  std::vector<std::vector<std::uint32_t>> of_cells;  // of each sun, lines that come to each element's sides
+  std::vector<std::vector<std::uint32_t>> shaded;    // of each sun, lines that do not come to each column's ground
   std::vector<std::vector<std::vector<std::uint32_t>>> of_seen;  // of each sun, of each tree, lines to its sides
-  std::vector<std::size_t> bands;                          // that differ
-  std::array<std::size_t, kBands> as{};                    // of which of those each band is
-  std::vector<GridSolution> solutions;                     // of those
-  std::vector<std::vector<float>> scattered;               // of those, irradiance of elements' sides by all but the suns
+  std::vector<std::size_t> bands;                                // that differ
+  std::array<std::size_t, kBands> as{};                          // of which of those each band is
+  std::vector<GridSolution> solutions;                           // of those
+  std::vector<std::vector<float>> scattered;  // of those, irradiance of elements' sides by all but the suns
 };
 
 LargeStandField::LargeStandField(const LargeStandEffort& effort) : effort_(effort) {
@@ -150,10 +150,12 @@ void LargeStandField::makeKinds() {
       const std::vector<Direction>& directions = kinds_[tree.kind]->exchange.directions;
       for (const Direction& direction : directions) {
         const glm::vec3 along = turned(direction, tree.rotation);
-        const auto closer = [&](const Direction& a, const Direction& b) {
-          return glm::dot(a, along) < glm::dot(b, along);
+        // Of those that rise and those that come down each for itself: light of the sky comes down.
+        const auto nearness = [&](const Direction& other) {
+          return glm::dot(other, along) - (other.z * along.z < 0.f ? 4.f : 0.f);
         };
-        turn.nearest.push_back(static_cast<std::uint32_t>(std::ranges::max_element(directions, closer) - directions.begin()));
+        turn.nearest.push_back(
+            static_cast<std::uint32_t>(std::ranges::max_element(directions, {}, nearness) - directions.begin()));
       }
     }
     turn_of_tree_.push_back(place->second);
@@ -221,7 +223,8 @@ void LargeStandField::makeCells() {
     }
   // Larger cells where these would be too many, those in which nothing is as well.
   float side = smallest / static_cast<float>(effort_.cells_along);
-  const glm::dvec3 extent = stand_.period ? glm::dvec3(glm::dvec2(*stand_.period), double{box.size().z}) : glm::dvec3(box.size());
+  const glm::dvec3 extent =
+      stand_.period ? glm::dvec3(glm::dvec2(*stand_.period), double{box.size().z}) : glm::dvec3(box.size());
   for (;; side *= 1.1f) {
     double taken = 0.;
     for (std::size_t i = 0; i < kinds_.size(); ++i)
@@ -238,8 +241,8 @@ void LargeStandField::makeCells() {
     kind.clusters = leafClusters(kind.elements, kClusterShare * side);
     kind.groups = clusterGroups(kind.clusters, kFarGroup);
     kind.group_side.clear();
-    for (const std::uint32_t side : kind.clusters.of_side)
-      kind.group_side.push_back(2 * kind.groups.of_cluster[side / 2] + side % 2);
+    for (const std::uint32_t of_cluster : kind.clusters.of_side)
+      kind.group_side.push_back(2 * kind.groups.of_cluster[of_cluster / 2] + of_cluster % 2);
     stats_.clumping[i] = clumpingByEscape(turnedClusters(kind.clusters, 0.f), kind.box, side, kind.escape);
   });
   trees_.clear();
@@ -342,7 +345,8 @@ void LargeStandField::solveCells() {
     for (const FieldKind& kind : lighting.kinds)
       for (const bool wood : {false, true})
         if (!(opticsOf(kind, wood, a) == opticsOf(kind, wood, b))) return false;
-    return std::ranges::all_of(lighting.suns, [&](const FieldSun& sun) { return sun.irradiance[i] == sun.irradiance[k]; });
+    return std::ranges::all_of(lighting.suns,
+                               [&](const FieldSun& sun) { return sun.irradiance[i] == sun.irradiance[k]; });
   };
   for (std::size_t band = 0; band < kBands; ++band) {
     const auto same = std::ranges::find_if(lit_->bands, [&](std::size_t other) { return alike(band, other); });
@@ -448,7 +452,8 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
         const std::vector<float>& irradiance = lit_->solutions[b].irradiance;
         const bool wood = medium.material[i] % 2 == 1;
         const float front = irradiance[2 * i], back = wood ? front : irradiance[2 * i + 1];
-        const float same = optics_same[medium.material[i] * bands + b], other = optics_other[medium.material[i] * bands + b];
+        const float same = optics_same[medium.material[i] * bands + b],
+                    other = optics_other[medium.material[i] * bands + b];
         sent[2 * i * bands + b] = same * front + other * back;
         sent[(2 * i + 1) * bands + b] = same * back + other * front;
       }
@@ -492,7 +497,8 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
         const Turn& turn = *turns_[turn_of_tree_[tree]];
         std::vector<glm::vec3>& of_turn = centres[turn_of_tree_[tree]];
         if (of_turn.empty())
-          for (const glm::vec3& centre : kinds_[turn.kind]->elements.centre) of_turn.push_back(turned(centre, turn.rotation));
+          for (const glm::vec3& centre : kinds_[turn.kind]->elements.centre)
+            of_turn.push_back(turned(centre, turn.rotation));
       }
       tbb::parallel_for(std::size_t{0}, now.size(), [&](std::size_t i) {
         LitTree& tree = trees[i];
@@ -532,13 +538,14 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
               for (std::size_t b = 0; b < bands; ++b) sum[b] += seen_area * from[b];
             }
             along.extinction[slot] = clumped / all * area / grid.volume();
-            for (std::size_t b = 0; b < bands; ++b)
-              along.radiance[slot * bands + b] = area > 0.f ? sum[b] / area : 0.f;
+            for (std::size_t b = 0; b < bands; ++b) along.radiance[slot * bands + b] = area > 0.f ? sum[b] / area : 0.f;
           }
         });
         std::array<float, kBands> of_sky{};
         for (std::size_t b = 0; b < bands; ++b) of_sky[b] = sky[number][static_cast<int>(lit_->bands[b])];
-        const AroundCells outside{.sky = std::span(of_sky).first(bands), .ground = ground, .open = ground.empty() ? std::span<const float>() : std::span<const float>(open)};
+        const AroundCells outside{.sky = std::span(of_sky).first(bands),
+                                  .ground = ground,
+                                  .open = ground.empty() ? std::span<const float>() : std::span<const float>(open)};
         // Of turned trees none or some of the directions are nearest to this one.
         struct Walls {
           std::size_t turn;
@@ -553,10 +560,8 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
           const OutsideLines& lines = kinds_[turns_[t]->kind]->outside;
           for (std::size_t k = 0; k < directions.size() && !centres[t].empty(); ++k)
             if (turns_[t]->nearest[k] == number)
-              walls.push_back({t,
-                               std::span(lines.side).subspan(lines.first[k], lines.first[k + 1] - lines.first[k]),
-                               k,
-                               {}});
+              walls.push_back(
+                  {t, std::span(lines.side).subspan(lines.first[k], lines.first[k + 1] - lines.first[k]), k, {}});
         }
         first_wall.push_back(walls.size());
         tbb::parallel_for(std::size_t{0}, walls.size(), [&](std::size_t i) {
@@ -596,7 +601,8 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
       if (!kinds_[kind]) continue;
       std::vector<FieldProblem> all;
       for (const std::size_t band : lit_->bands)
-        optics[kind].push_back({opticsOf(lighting.kinds[kind], false, band), opticsOf(lighting.kinds[kind], true, band)});
+        optics[kind].push_back(
+            {opticsOf(lighting.kinds[kind], false, band), opticsOf(lighting.kinds[kind], true, band)});
       for (const auto& of_band : optics[kind]) all.push_back({.direct = {}, .optics = of_band});
       stays[kind] = recollision(kinds_[kind]->exchange, kinds_[kind]->materials, largestAlbedo(all), false);
     }
@@ -623,7 +629,8 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
             by_lines += double{of_sun[side]} * kind.exchange.lines[side / 2];
           }
           // solveField() scales direct light to the areas that lines tell; light that came by lines is so already.
-          const double of_line = kind.exchange.line_power / double{kPi}, scale = by_lines > 0. ? power / (by_lines * of_line) : 1.;
+          const double of_line = kind.exchange.line_power / double{kPi},
+                       scale = by_lines > 0. ? power / (by_lines * of_line) : 1.;
           std::vector<float>& light = lights.emplace_back(sides);
           double both = 0., both_by_lines = 0.;
           for (std::size_t side = 0; side < sides; ++side) {

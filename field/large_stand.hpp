@@ -24,29 +24,29 @@ struct LargeStandEffort {
   ExchangeEffort exchange;
   SolverEffort solver;
   GridEffort cells;
-  int cells_along = 8;         // cells along the longest side of the smallest tree, where these are few enough
-  double most_cells = 5e5;     // that hold something, of all trees
-  double most_lines = 1.5e9;   // of a sun's light, that all trees' pictures take together
-  float pixels = 32.f;         // of such a picture, on an element of mean area that faces the sun, where these are few
-                               // enough [1]
-  double most_memory = 4e9;    // [byte]
+  int cells_along = 8;        // cells along the longest side of the smallest tree, where these are few enough
+  double most_cells = 8e5;    // that hold something, of all trees
+  double most_lines = 1.5e9;  // of a sun's light, that all trees' pictures take together
+  float pixels = 32.f;        // of such a picture, on an element of mean area that faces the sun, where these are few
+                              // enough [1]
+  double most_memory = 4e9;   // [byte]
 };
 
 struct LargeStandStats {
-  float cell_side = 0.f;      // [m]
-  std::size_t cells = 0;      // that hold something
-  std::size_t elements = 0;   // in them
-  int cell_iterations = 0;    // of the solution on cells, the most of a band
-  double cell_error = 0.;     // its bound
-  double memory = 0.;         // that was foreseen [byte]
+  float cell_side = 0.f;        // [m]
+  std::size_t cells = 0;        // that hold something
+  std::size_t elements = 0;     // in them
+  int cell_iterations = 0;      // of the solution on cells, the most of a band
+  double cell_error = 0.;       // its bound
+  double memory = 0.;           // that was foreseen [byte]
   std::vector<float> clumping;  // of each kind
 };
 
-// (F28) to (F30) The light of the leaves of some trees of a stand of very many. The whole stand is solved in coarse cells; what
-// comes from there to the trees asked for is the light around each of them, which is then solved leaf by leaf along
-// lines that all trees of its kind share. Nothing is kept of the leaves of other trees.
-// Products are kept from one call to the next as far as what they follow from is the same. Not to be used by several
-// threads at once; it uses all cores itself. The same to the bit for any number of threads.
+// (F28), (F29) The light of the leaves of some trees of a stand of very many. The whole stand is solved in coarse
+// cells; what comes from there to the trees asked for is the light around each of them, which is then solved leaf by
+// leaf along lines that all trees of its kind share. Nothing is kept of the leaves of other trees. Products are kept
+// from one call to the next as far as what they follow from is the same. Not to be used by several threads at once; it
+// uses all cores itself. The same to the bit for any number of threads.
 class LargeStandField {
  public:
   explicit LargeStandField(const LargeStandEffort& effort = {});

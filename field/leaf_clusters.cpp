@@ -14,8 +14,8 @@ namespace {
 const std::array<glm::vec3, kFacings>& axes() {
   static const std::array<glm::vec3, kFacings> kAxes = [] {
     constexpr float kGolden = 1.6180340f;
-    std::array<glm::vec3, kFacings> made{glm::vec3(0.f, 1.f, kGolden),  glm::vec3(0.f, -1.f, kGolden),
-                                         glm::vec3(1.f, kGolden, 0.f),  glm::vec3(-1.f, kGolden, 0.f),
+    std::array<glm::vec3, kFacings> made{glm::vec3(0.f, 1.f, kGolden), glm::vec3(0.f, -1.f, kGolden),
+                                         glm::vec3(1.f, kGolden, 0.f), glm::vec3(-1.f, kGolden, 0.f),
                                          glm::vec3(kGolden, 0.f, 1.f), glm::vec3(-kGolden, 0.f, 1.f)};
     for (glm::vec3& axis : made) axis = glm::normalize(axis);
     return made;

@@ -22,13 +22,13 @@ Facing facingOf(const glm::vec3& normal);
 // (F28) Elements of a tree gathered by the cells they lie in, by the way they face, and leaves apart from wood: what
 // stands for them where a tree is one of very many.
 struct LeafClusters {
-  std::vector<glm::vec3> centre;        // mean over the area [m]
-  std::vector<glm::vec3> normal;        // of the front; the mean over the area, a unit vector
-  std::vector<float> area;              // seen from either side [m^2]: of wood half of its surface
-  std::vector<std::uint8_t> wood;       // whether it is wood
-  std::vector<std::uint8_t> facing;     // the axis along which it faces
-  std::vector<glm::ivec3> cell;         // that it lies in
-  std::vector<std::uint32_t> of_side;   // of each side of each element: 2 cluster (front) or 2 cluster + 1 (back)
+  std::vector<glm::vec3> centre;       // mean over the area [m]
+  std::vector<glm::vec3> normal;       // of the front; the mean over the area, a unit vector
+  std::vector<float> area;             // seen from either side [m^2]: of wood half of its surface
+  std::vector<std::uint8_t> wood;      // whether it is wood
+  std::vector<std::uint8_t> facing;    // the axis along which it faces
+  std::vector<glm::ivec3> cell;        // that it lies in
+  std::vector<std::uint32_t> of_side;  // of each side of each element: 2 cluster (front) or 2 cluster + 1 (back)
   std::size_t size() const { return area.size(); }
 };
 

@@ -170,7 +170,8 @@ std::vector<std::uint32_t> elementSides(const StandMedium& medium, const CellMed
   const TurnedClusters& turned = *tree.turned;
   std::vector<std::uint32_t> sides(turned.centre.size());
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    const std::uint32_t slot = cells.grid.slot[cellNumber(cells.grid, cellAt(cells.grid, tree.position + turned.centre[i]))];
+    const std::uint32_t slot =
+        cells.grid.slot[cellNumber(cells.grid, cellAt(cells.grid, tree.position + turned.centre[i]))];
     const std::uint32_t material = kindOfElement(tree.kind, turned.clusters->wood[i]);
     std::uint32_t element = cells.first_piece[slot];
     while (cells.material[element] != material || medium.axis[element] != turned.facing[i].axis) ++element;

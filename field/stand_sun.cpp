@@ -74,10 +74,8 @@ SunPicture sunPicture(const TreeMesh& mesh, const FieldElements& elements, float
   const auto pixels = static_cast<std::size_t>(picture.size.x) * static_cast<std::size_t>(picture.size.y);
   picture.depth.assign(pixels, kNothing);
   picture.side.assign(pixels, 0);
-  const detail::PixelGrid grid{.corner = glm::dvec2(picture.low),
-                               .pixels_per_metre = 1.,
-                               .columns = picture.size.x,
-                               .rows = picture.size.y};
+  const detail::PixelGrid grid{
+      .corner = glm::dvec2(picture.low), .pixels_per_metre = 1., .columns = picture.size.x, .rows = picture.size.y};
   const detail::ScanConversion scan = detail::scanConversion();
   std::vector<detail::Span> spans(std::max<std::size_t>(4096, static_cast<std::size_t>(grid.rows)));
   const auto draw = [&](const std::vector<glm::uvec3>& triangles, const std::vector<std::uint32_t>& of_triangle) {
@@ -89,10 +87,12 @@ SunPicture sunPicture(const TreeMesh& mesh, const FieldElements& elements, float
         const glm::vec3 &a = corners[t.x], &b = corners[t.y], &c = corners[t.z];
         const bool front = ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) < 0.f) != lines.mirrored;
         const std::uint32_t side = 2 * of_triangle[begin + span.triangle] + (front ? 0 : 1);
-        const std::size_t at = static_cast<std::size_t>(span.row) * static_cast<std::size_t>(picture.size.x) + span.column;
+        const std::size_t at =
+            static_cast<std::size_t>(span.row) * static_cast<std::size_t>(picture.size.x) + span.column;
         for (std::uint32_t i = 0; i < span.length; ++i) {
           const float depth = span.depth + static_cast<float>(i) * span.slope;
-          if (depth > picture.depth[at + i] || (depth == picture.depth[at + i] && side >= picture.side[at + i])) continue;
+          if (depth > picture.depth[at + i] || (depth == picture.depth[at + i] && side >= picture.side[at + i]))
+            continue;
           picture.depth[at + i] = depth;
           picture.side[at + i] = side;
         }
@@ -105,7 +105,7 @@ SunPicture sunPicture(const TreeMesh& mesh, const FieldElements& elements, float
   return picture;
 }
 
-// (F29)
+// (F3)
 void shineOn(std::span<const SunlitTree> trees, const SunLines& lines,
              const std::function<void(std::size_t tree, std::span<const std::uint32_t> of_sides)>& lit,
              const std::function<void(const SunTile& tile)>& seen) {
@@ -127,8 +127,9 @@ void shineOn(std::span<const SunlitTree> trees, const SunLines& lines,
     const glm::dvec3 position(trees[tree].position);
     depths.push_back(static_cast<float>(glm::dot(position, lines.depth)));
     const glm::ivec2 size = trees[tree].picture->size;
-    const glm::ivec2 low = trees[tree].picture->low + glm::ivec2(glm::round(glm::dvec2(
-                                                          glm::dot(position, lines.right), glm::dot(position, lines.up))));
+    const glm::ivec2 low =
+        trees[tree].picture->low +
+        glm::ivec2(glm::round(glm::dvec2(glm::dot(position, lines.right), glm::dot(position, lines.up))));
     if (!lines.repeat) {
       place({tree, low}, size);
       continue;

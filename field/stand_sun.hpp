@@ -14,7 +14,7 @@
 
 namespace sunfleck {
 
-// (F29) Lines of a sun's light, one through each pixel of a picture that is too large to be held: a map from space to
+// (F3) Lines of a sun's light, one through each pixel of a picture that is too large to be held: a map from space to
 // pixels across the light and the depth along it.
 struct SunLines {
   Direction along{0.f, 0.f, -1.f};
@@ -29,9 +29,9 @@ SunLines sunLines(Direction along, double area, const std::optional<glm::vec2>& 
 
 // What the sun sees of a tree that stands alone at the origin: of each pixel the first side of an element on its line.
 struct SunPicture {
-  glm::ivec2 low{0}, size{0};        // first pixel, and how many
-  std::vector<float> depth;          // of the side along the light, infinite where there is none [m]
-  std::vector<std::uint32_t> side;   // 2 element (front) or 2 element + 1 (back)
+  glm::ivec2 low{0}, size{0};       // first pixel, and how many
+  std::vector<float> depth;         // of the side along the light, infinite where there is none [m]
+  std::vector<std::uint32_t> side;  // 2 element (front) or 2 element + 1 (back)
   std::size_t memoryBytes() const { return depth.size() * 8; }
 };
 SunPicture sunPicture(const TreeMesh& mesh, const FieldElements& elements, float rotation, const SunLines& lines);
@@ -50,7 +50,7 @@ struct SunTile {
   std::span<const float> depth;
 };
 
-// (F29) The stand as the sun sees it, tile by tile: in each pixel the first tree that has something on its line. Calls
+// (F3) The stand as the sun sees it, tile by tile: in each pixel the first tree that has something on its line. Calls
 // from many threads, in any order:
 //   lit   a tree, and of each side of its elements how many lines come to it within a tile
 //   seen  a whole tile; may be none

@@ -62,8 +62,7 @@ Bands comesTo(const glm::vec3& point, const glm::vec3& outward, const LitTree& t
       if (cell.z >= grid.size.z) break;
       if (cell.z < 0) {
         cell.z = 0;
-        const std::uint32_t column =
-            cellNumber(grid, cell) % static_cast<std::uint32_t>(grid.size.x * grid.size.y);
+        const std::uint32_t column = cellNumber(grid, cell) % static_cast<std::uint32_t>(grid.size.x * grid.size.y);
         if (!around.ground.empty()) add(around.ground.data() + column * bands, passing);
         return light;
       }
@@ -124,7 +123,7 @@ WallPixels wallPixels(std::span<const glm::vec3> centre, std::span<const std::ui
   return pixels;
 }
 
-// (F30)
+// (F29)
 void addWallLight(const LitTree& tree, const SweepGrid& grid, const CellsAlong& cells, const AroundCells& around,
                   const WallPixels& pixels, std::span<const std::uint32_t> sides, std::span<const float> per_line,
                   std::size_t bands, std::span<float> irradiance) {

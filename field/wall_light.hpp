@@ -34,12 +34,12 @@ struct AroundCells {
   std::span<const float> open;    // and beyond the cells, of each band; empty: none
 };
 
-// Lines of one direction to a tree, gathered by pixels across them: light is followed once for all lines of a pixel, from
-// where they begin in the mean.
+// Lines of one direction to a tree, gathered by pixels across them: light is followed once for all lines of a pixel,
+// from where they begin in the mean.
 struct WallPixels {
-  Direction along{0.f, 0.f, -1.f};      // in which the light travels
-  std::vector<std::uint32_t> of_line;   // pixel of each line
-  std::vector<glm::vec3> begin;         // of each pixel, relative to the tree's place [m]
+  Direction along{0.f, 0.f, -1.f};     // in which the light travels
+  std::vector<std::uint32_t> of_line;  // pixel of each line
+  std::vector<glm::vec3> begin;        // of each pixel, relative to the tree's place [m]
 };
 //   centre  of the tree's elements, as it is turned, relative to its place [m]
 //   sides   of elements that the lines come to
@@ -49,12 +49,12 @@ WallPixels wallPixels(std::span<const glm::vec3> centre, std::span<const std::ui
 
 // A tree that light comes to.
 struct LitTree {
-  glm::vec3 position{0.f};          // [m]
-  glm::ivec3 low{0}, size{0};       // cells that it lies in, whole periods not taken off
-  std::vector<float> own;           // the share of each cell's leaves that are its own [1]
+  glm::vec3 position{0.f};     // [m]
+  glm::ivec3 low{0}, size{0};  // cells that it lies in, whole periods not taken off
+  std::vector<float> own;      // the share of each cell's leaves that are its own [1]
 };
 
-// (F30) Adds to `irradiance` what comes to a tree from beyond its own leaves in one direction: along its lines outward
+// (F29) Adds to `irradiance` what comes to a tree from beyond its own leaves in one direction: along its lines outward
 // through what stands in the cells beside itself.
 //   sides       that the lines of the pixels come to
 //   per_line    irradiance of each element by radiance 1 on one of its lines [sr]

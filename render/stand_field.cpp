@@ -13,12 +13,20 @@
 namespace sunfleck {
 namespace {
 
-constexpr int kWoodCells = 16;  // along the longest side of a tree
-constexpr std::size_t kMostAsOne = 2'000'000;        // leaves of a stand whose trees are solved together
-constexpr std::size_t kMostNear = 10'000'000;        // of those trees of a picture that have a place for each
+constexpr int kWoodCells = 16;                        // along the longest side of a tree
+constexpr std::size_t kMostAsOne = 2'000'000;         // leaves of a stand whose trees are solved together
+constexpr std::size_t kMostNear = 10'000'000;         // of those trees of a picture that have a place for each
 constexpr std::size_t kMostFieldLeaves = 40'000'000;  // of which it can be told: about 100 bytes for each
 
-FieldLighting lightingOf(const Scene& scene) {
+std::size_t leavesOf(const Scene& scene) {
+  std::size_t leaves = 0;
+  for (const Placement& tree : scene.stand.trees) leaves += scene.kindOf(tree).mesh->leaf_count;
+  return leaves;
+}
+
+}  // namespace
+
+FieldLighting fieldLighting(const Scene& scene) {
   const SunAndSky shining = sunAndSky(scene);
   FieldLighting lighting{.suns = {}, .sky = shining.sky, .kinds = {}, .ground_albedo = scene.ground_albedo};
   for (std::size_t i = 0; i < scene.suns.size(); ++i)
@@ -28,14 +36,6 @@ FieldLighting lightingOf(const Scene& scene) {
     lighting.kinds.push_back({.leaf = kind.leaf, .wood_reflectance = kind.wood_reflectance});
   return lighting;
 }
-
-std::size_t leavesOf(const Scene& scene) {
-  std::size_t leaves = 0;
-  for (const Placement& tree : scene.stand.trees) leaves += scene.kindOf(tree).mesh->leaf_count;
-  return leaves;
-}
-
-}  // namespace
 
 bool fieldFits(const Scene& scene) {
   return leavesOf(scene) <= kMostFieldLeaves;
@@ -110,7 +110,7 @@ void StandField::updateLarge(const Scene& scene, std::span<const std::shared_ptr
     seen.resize(near);
   }
   large_->setStand(meshes, scene.stand);
-  result_ = &large_->solve(lightingOf(scene), seen, far);
+  result_ = &large_->solve(fieldLighting(scene), seen, far);
   far_.assign(far.empty() ? 0 : scene.stand.trees.size(), false);
   for (const std::size_t tree : far) far_[tree] = true;
 }
@@ -125,13 +125,14 @@ void StandField::update(const Scene& scene, std::optional<std::span<const std::s
     updateLarge(scene, meshes, trees);
   } else {
     field_.setStand(meshes, scene.stand);
-    result_ = &field_.solve(lightingOf(scene));
+    result_ = &field_.solve(fieldLighting(scene));
   }
   kinds_.resize(meshes.size());
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (kinds_[i].mesh != meshes[i]) kinds_[i] = kindOf(meshes[i]);
     kinds_[i].far_places.clear();
-    const auto of_sides = far_.empty() ? std::span<const std::uint32_t>() : large_->farSidesOf(static_cast<std::uint32_t>(i));
+    const auto of_sides =
+        far_.empty() ? std::span<const std::uint32_t>() : large_->farSidesOf(static_cast<std::uint32_t>(i));
     if (of_sides.empty()) continue;
     // A place has the light of its front, then of its back: those of a group, or exchanged.
     const FieldElements& elements = large_->elements(static_cast<std::uint32_t>(i));

@@ -18,14 +18,18 @@ namespace sunfleck {
 bool fieldFits(const Scene& scene);
 void requireField(const Scene& scene);
 
+// What shines on a scene's trees, and what they do to light, as the field reads it. Throws InvalidInput as sunAndSky()
+// does.
+FieldLighting fieldLighting(const Scene& scene);
+
 // (F26) The light field of a scene's stand, kept for pictures: what comes to either side of each place of each tree by
 // all but the suns' direct light. A place is a leaf or, for the wood, a cell of the tree.
 class StandField {
  public:
   explicit StandField(const FieldEffort& effort = {});
 
-  // Brings it up to date for the scene. A stand of more leaves than can be solved as one is solved in cells, and leaf by
-  // leaf only where trees are asked for (F28). Throws InvalidInput as LeafField, LargeStandField, requireField() and
+  // Brings it up to date for the scene. A stand of more leaves than can be solved as one is solved in cells, and leaf
+  // by leaf only where trees are asked for (F28). Throws InvalidInput as LeafField, LargeStandField, requireField() and
   // sunAndSky() do.
   //   trees  that a picture by the scene's camera shows; none: all. Of very many those nearest to the camera have a
   //          place for each leaf, the others for what lies together and faces alike.

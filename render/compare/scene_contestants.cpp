@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "field/direct_light.hpp"
 #include "field/elements.hpp"
 #include "field/grid_field.hpp"
+#include "field/large_stand.hpp"
 #include "render/compare/exact_powers.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
@@ -89,6 +91,40 @@ class FieldContestant final : public SceneContestant {
   const int band_;
   const FieldEffort effort_;
   std::optional<StandField> field_;
+};
+
+// A stand's trees each by itself, in the light that comes from the others in cells.
+class StandContestant final : public SceneContestant {
+ public:
+  StandContestant(const Scene& scene, int cells, int band)
+      : scene_(scene),
+        turned_(turned(scene)),
+        band_(band),
+        effort_{.cells_along = cells},
+        all_(scene.stand.trees.size()) {
+    std::iota(all_.begin(), all_.end(), std::size_t{0});
+    for (const TreeKind& kind : scene.kinds) meshes_.push_back(kind.mesh);
+  }
+
+  std::vector<float> fromNothing(int /*round*/, const Progress& /*progress*/) override {
+    field_.emplace(effort_);
+    field_->setStand(meshes_, scene_.stand);
+    return answer(scene_);
+  }
+  void turnAway(const Progress& /*progress*/) override { field_->solve(fieldLighting(turned_), all_); }
+  std::vector<float> sunTurned(int /*round*/, const Progress& /*progress*/) override { return answer(scene_); }
+
+ private:
+  std::vector<float> answer(const Scene& scene) {
+    return leafIrradiance(field_->solve(fieldLighting(scene), all_), scene, band_);
+  }
+
+  const Scene scene_, turned_;
+  const int band_;
+  const LargeStandEffort effort_;
+  std::vector<std::size_t> all_;
+  std::vector<std::shared_ptr<const TreeMesh>> meshes_;
+  std::optional<LargeStandField> field_;
 };
 
 // The field on cells alone, of one tree, not turned.
@@ -183,6 +219,12 @@ std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const std
                      .setting = static_cast<double>(axes),
                      .work = 1e4 * axes,
                      .contestant = std::make_unique<FieldContestant>(scattering, axes, band)});
+    for (const int cells : {4, 8, 16})
+      if (scene.stand.trees.size() > 1)
+        all.push_back({.method = "stand",
+                       .setting = static_cast<double>(cells),
+                       .work = 5e5,
+                       .contestant = std::make_unique<StandContestant>(scattering, cells, band)});
     const bool one_tree = scene.stand.trees.size() == 1 && scene.stand.trees[0].rotation == 0.f;
     if (!one_tree || models.size() == 1) continue;  // under other light than one sun's the field stands alone
     for (const int cells : {8, 16, 24, 32})
