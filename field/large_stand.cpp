@@ -714,20 +714,26 @@ const FieldElements& LargeStandField::elements(std::uint32_t kind) const {
   return kinds_[kind]->elements;
 }
 
-void LargeStandField::requireMemory(std::span<const std::size_t> seen, std::span<const std::size_t> far) {
-  const auto bands = static_cast<double>(kBands), suns = static_cast<double>(lighting_->suns.size());
+void LargeStandField::requireMemory(const FieldLighting& lighting, std::span<const std::size_t> seen,
+                                    std::span<const std::size_t> far) {
+  const auto bands = static_cast<double>(kBands), suns = static_cast<double>(lighting.suns.size());
   double bytes = 0., light = 0.;
   for (const std::size_t tree : seen) {
     const std::uint32_t kind = stand_.trees[tree].kind;
-    const double sides = 2. * static_cast<double>(kinds_[kind]->elements.size());
+    const bool known = kind < kinds_.size() && kinds_[kind];
+    const double sides =
+        2. * static_cast<double>(known ? kinds_[kind]->elements.size() : std::size_t{meshes_[kind]->leaf_count});
     bytes += sizeof(LeafLight) * static_cast<double>(meshes_[kind]->leaf_count) + 4. * sides * suns;
     light += 4. * bands * sides;
   }
-  for (const std::size_t tree : far)
-    bytes += 2. * sizeof(glm::vec3) * static_cast<double>(kinds_[stand_.trees[tree].kind]->groups.count);
-  bytes += std::min(light, kLightMemory) + cells_->memoryBytes(1);
-  for (const auto& kind : kinds_)
-    if (kind) bytes += static_cast<double>(kind->exchange.memoryBytes() + 4 * kind->outside.side.size());
+  bytes += std::min(light, kLightMemory);
+  if (cells_) {
+    bytes += cells_->memoryBytes(1);
+    for (const std::size_t tree : far)
+      bytes += 2. * sizeof(glm::vec3) * static_cast<double>(kinds_[stand_.trees[tree].kind]->groups.count);
+    for (const auto& kind : kinds_)
+      if (kind) bytes += static_cast<double>(kind->exchange.memoryBytes() + 4 * kind->outside.side.size());
+  }
   stats_.memory = bytes;
   const double most = std::min(effort_.most_memory, availableMemory());
   require(bytes <= most, fmt::format("light field of {} trees in view: memory [MB]", seen.size() + far.size()),
@@ -739,6 +745,8 @@ const FieldResult& LargeStandField::solve(const FieldLighting& lighting, std::sp
   require(!meshes_.empty(), "number of trees", 0, "at least 1: setStand first");
   requireLighting(lighting, meshes_.size());
   if (cells_stale_) {
+    cells_.reset();
+    requireMemory(lighting, seen, far);  // as far as it is known before there are elements
     makeKinds();
     makeCells();
     cells_stale_ = false;
@@ -751,7 +759,7 @@ const FieldResult& LargeStandField::solve(const FieldLighting& lighting, std::sp
   seen_.assign(seen.begin(), seen.end());
   far_.assign(far.begin(), far.end());
   try {
-    requireMemory(seen, far);
+    requireMemory(lighting, seen, far);
     result_ = {};
     result_.trees.resize(stand_.trees.size());
     makeSuns(seen);

@@ -84,7 +84,8 @@ class LargeStandField {
   void solveCells();
   void solveTrees(std::span<const std::size_t> seen);
   void tellFar(std::span<const std::size_t> far);
-  void requireMemory(std::span<const std::size_t> seen, std::span<const std::size_t> far);
+  void requireMemory(const FieldLighting& lighting, std::span<const std::size_t> seen,
+                     std::span<const std::size_t> far);
 
   LargeStandEffort effort_;
   Stand stand_{.trees = {}};
