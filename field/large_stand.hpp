@@ -24,12 +24,12 @@ struct LargeStandEffort {
   ExchangeEffort exchange;
   SolverEffort solver;
   GridEffort cells;
-  int cells_along = 8;        // cells along the longest side of the smallest tree, where these are few enough
-  double most_cells = 8e5;    // that hold something, of all trees
-  double most_lines = 1.5e9;  // of a sun's light, that all trees' pictures take together
-  float pixels = 32.f;        // of such a picture, on an element of mean area that faces the sun, where these are few
-                              // enough [1]
-  double most_memory = 4e9;   // [byte]
+  int cells_along = 8;       // cells along the longest side of the smallest tree, where these are few enough
+  double most_cells = 8e5;   // that hold something, of all trees
+  double most_lines = 8e8;   // of a sun's light, that all trees' pictures take together
+  float pixels = 128.f;      // of such a picture, on an element of mean area that faces the sun, where these are few
+                             // enough [1]
+  double most_memory = 4e9;  // [byte]
 };
 
 struct LargeStandStats {

@@ -123,7 +123,7 @@ TEST(F29_LargeStand, LightsATreeAloneAsItsLinesDo) {
   const std::array kinds{tree};
   FieldLighting lighting = sunlit(1);
   lighting.sky = std::make_shared<const SkyMap>(overcastSky(glm::dvec3(1.)));
-  LargeStandField large(LargeStandEffort{.pixels = 128.f});
+  LargeStandField large;
   large.setStand(kinds, {});
   const std::array seen{std::size_t{0}};
   const FieldResult& found = large.solve(lighting, seen);
