@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bench_directions.hpp"
+#include "apps/bench_forest.hpp"
 #include "apps/bench_pictures.hpp"
 #include "apps/bench_scene.hpp"
 #include "apps/bench_stand.hpp"
@@ -108,6 +109,18 @@ void addBench(CLI::App& app, RunOptions& options, int& status) {
   of_stand->add_option("--trees", *trees, "Trees of the largest stand, 16 to 50000 (default 1024; 10000 take 1.3 GB)")
       ->transform(wholeNumberIn(16., 5e4, "a whole number, 16 to 50000"));
   of_stand->callback([trees, folder, &options, &status] { status = runBenchStand(*trees, *folder, options); });
+
+  auto forest = std::make_shared<std::size_t>(1024);
+  auto near = std::make_shared<std::size_t>(1000);
+  CLI::App* of_forest =
+      addCommand(*bench, options, "forest", "What the light field of stands of very many trees costs: time and memory");
+  folderOption(*of_forest, "forest_bench.csv");
+  of_forest->add_option("--trees", *forest, "Trees of the largest stand, 16 to 50000 (default 1024)")
+      ->transform(wholeNumberIn(16., 5e4, "a whole number, 16 to 50000"));
+  of_forest->add_option("--near", *near, "Trees whose leaves are solved one by one, 1 to 50000 (default 1000)")
+      ->transform(wholeNumberIn(1., 5e4, "a whole number, 1 to 50000"));
+  of_forest->callback(
+      [forest, near, folder, &options, &status] { status = runBenchForest(*forest, *near, *folder, options); });
 
   auto pictures = std::make_shared<PictureBenchOptions>();
   CLI::App* of_pictures = addCommand(*bench, options, "pictures",

@@ -215,6 +215,14 @@ class Solve {
 
   void addOutside(std::size_t lane) {
     const FieldProblem& problem = problems_[lane];
+    if (!problem.arriving.empty()) {
+      double power = 0.;
+      for (std::size_t side = 0; side < ground(); ++side) {
+        source_[side][lane] += problem.arriving[side];
+        power += double{problem.arriving[side]} * exchange_.lines[side / 2];
+      }
+      balance_[lane].in += power * exchange_.line_power / kPi;
+    }
     const double of_ground = groundBeyond(lane);
     if (problem.outside.empty() && of_ground == 0.) return;
     std::vector<double> entering((count() + kBlock - 1) / kBlock);

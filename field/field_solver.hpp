@@ -21,8 +21,10 @@ struct ElementOptics {
 
 // One case to solve: light of one band and from one source, and what it meets.
 struct FieldProblem {
-  const DirectLight* direct = nullptr;    // of a sun; none: dark
-  const LitPlaces* lit = nullptr;         // and where it falls; none: evenly on each side
+  const DirectLight* direct = nullptr;  // of a sun; none: dark
+  const LitPlaces* lit = nullptr;       // and where it falls; none: evenly on each side
+  // Irradiance of each side by light that comes along the exchange's lines from beyond it [1]; empty: none.
+  std::span<const float> arriving{};
   std::span<const float> outside{};       // radiance of the sky in which light travels in each of the exchange's
                                           // directions [1/sr]; 0 for those that rise; empty: none
   std::span<const ElementOptics> optics;  // of each kind

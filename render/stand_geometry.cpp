@@ -362,7 +362,7 @@ void StandGeometry::update(const Scene& scene, const GeometryNeeds& needs,
   if (!needs.field) return;
   if (!field_) field_ = std::make_unique<StandField>();
   field_->update(scene, needs.preview ? FieldBy::cells : FieldBy::lines, field_progress,
-                 scene.ground_albedo == glm::vec3(0.f) ? GroundGrid{} : foliage_->ground());
+                 scene.ground_albedo == glm::vec3(0.f) ? GroundGrid{} : foliage_->ground(), trees);
   field_told_ = true;
 }
 

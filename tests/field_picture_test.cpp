@@ -16,12 +16,16 @@ using namespace sunfleck::woods;
 
 // The field of a stand, of any figures: a place for each leaf, as the front and the back of leaf i of tree t have them.
 struct SomeField {
-  std::vector<std::vector<std::uint32_t>> places;
+  std::vector<std::vector<std::uint32_t>> places, far_places;  // those that are far have leaves the other way round
   std::vector<std::vector<glm::vec3>> sides;
 
   explicit SomeField(const Woods& woods) {
-    for (const TreeKind& kind : woods.scene.kinds)
+    for (const TreeKind& kind : woods.scene.kinds) {
       places.emplace_back(kind.mesh->leaf_of_triangle.begin(), kind.mesh->leaf_of_triangle.end());
+      far_places.emplace_back();
+      for (const std::uint32_t leaf : kind.mesh->leaf_of_triangle)
+        far_places.back().push_back(kind.mesh->leaf_count - 1 - leaf);
+    }
     for (std::size_t tree = 0; tree < woods.scene.stand.trees.size(); ++tree) {
       sides.emplace_back();
       const TreeMesh& mesh = *woods.scene.kindOf(woods.scene.stand.trees[tree]).mesh;
@@ -31,16 +35,23 @@ struct SomeField {
       }
     }
   }
+  static bool isFar(std::size_t tree) { return tree % 2 == 1; }
   // Tells it of the stand, of all but the last tree.
   void tell(gl::DrawnStand& stand, std::uint64_t revision) const {
-    for (std::size_t kind = 0; kind < places.size(); ++kind) stand.kinds[kind].field_places = places[kind];
-    for (std::size_t tree = 0; tree + 1 < sides.size(); ++tree) stand.trees[tree].field = {sides[tree], revision};
+    for (std::size_t kind = 0; kind < places.size(); ++kind) {
+      stand.kinds[kind].field_places = places[kind];
+      stand.kinds[kind].far_field_places = far_places[kind];
+    }
+    for (std::size_t tree = 0; tree + 1 < sides.size(); ++tree) {
+      stand.trees[tree].field = {sides[tree], revision};
+      stand.trees[tree].far = isFar(tree);
+    }
   }
 };
 
 // (F26) Check what a picture by the field shows against C++ and the figures told of each leaf's sides: those of the
-// side that is seen and of the other, in the suns' light and in the sky's; of a tree of which nothing is told nothing;
-// and that what has changed is sent, and nothing else.
+// side that is seen and of the other, in the suns' light and in the sky's; of a tree that is far those of its places
+// there; of a tree of which nothing is told nothing; and that what has changed is sent, and nothing else.
 TEST(F26_FieldPicture, ShowsTheFieldOfEachLeafAndSide) {
   Woods woods;
   SomeField field(woods);
@@ -72,8 +83,9 @@ TEST(F26_FieldPicture, ShowsTheFieldOfEachLeafAndSide) {
         const shading::Surface surface =
             shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), 0, 0, normal, -along);
         const std::vector<glm::vec3>& sides = field.sides[tree];
+        const std::size_t place = SomeField::isFar(tree) ? mesh.leaf_count - 1 - leaf : leaf;
         const glm::vec3 expected =
-            told ? shading.shadeBySides(surface, sides[2 * leaf + same], sides[2 * leaf + 1 - same]).scattered
+            told ? shading.shadeBySides(surface, sides[2 * place + same], sides[2 * place + 1 - same]).scattered
                  : glm::vec3(0.f);
         const std::array bands{"R", "G", "B"};
         for (int band = 0; band < 3; ++band) {

@@ -116,10 +116,12 @@ TEST(F27_LeafIrradiance, IsTheMeanOfTheTreesOfAKind) {
   EXPECT_EQ(leafIrradiance(field, given, 1), (std::vector<float>{10.75f, 2.75f}));
 }
 
-// Check that stands are refused that have more leaves than there is a field for, before anything is computed.
+// Check that stands are refused that have more leaves than the field can tell of one by one, before anything is
+// computed.
 TEST(StandField, RefusesForests) {
   Scene forest = scene();
-  forest.stand.trees.assign(40'000, Placement{});
+  forest.stand.trees.assign(700'000, Placement{});
+  EXPECT_FALSE(fieldFits(forest));
   EXPECT_THROW(StandField().update(forest), InvalidInput);
 }
 

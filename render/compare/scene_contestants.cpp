@@ -1,9 +1,11 @@
 #include "render/compare/scene_contestants.hpp"
 
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "field/large_stand.hpp"
 #include "render/compare/exact_powers.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
@@ -88,6 +90,40 @@ class FieldContestant final : public SceneContestant {
   std::optional<StandField> field_;
 };
 
+// A stand's trees each by itself, in the light that comes from the others in cells.
+class StandContestant final : public SceneContestant {
+ public:
+  StandContestant(const Scene& scene, int cells, int band)
+      : scene_(scene),
+        turned_(turned(scene)),
+        band_(band),
+        effort_{.cells_along = cells},
+        all_(scene.stand.trees.size()) {
+    std::iota(all_.begin(), all_.end(), std::size_t{0});
+    for (const TreeKind& kind : scene.kinds) meshes_.push_back(kind.mesh);
+  }
+
+  std::vector<float> fromNothing(int /*round*/, const Progress& /*progress*/) override {
+    field_.emplace(effort_);
+    field_->setStand(meshes_, scene_.stand);
+    return answer(scene_);
+  }
+  void turnAway(const Progress& /*progress*/) override { field_->solve(fieldLighting(turned_), all_); }
+  std::vector<float> sunTurned(int /*round*/, const Progress& /*progress*/) override { return answer(scene_); }
+
+ private:
+  std::vector<float> answer(const Scene& scene) {
+    return leafIrradiance(field_->solve(fieldLighting(scene), all_), scene, band_);
+  }
+
+  const Scene scene_, turned_;
+  const int band_;
+  const LargeStandEffort effort_;
+  std::vector<std::size_t> all_;
+  std::vector<std::shared_ptr<const TreeMesh>> meshes_;
+  std::optional<LargeStandField> field_;
+};
+
 class TraceContestant final : public SceneContestant {
  public:
   TraceContestant(const Scene& scene, const TraceEffort& effort, std::uint64_t seeds_apart, int band, bool with_wood)
@@ -136,6 +172,12 @@ std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const std
                      .setting = static_cast<double>(axes),
                      .work = 1e4 * axes,
                      .contestant = std::make_unique<FieldContestant>(scattering, FieldBy::lines, axes, band)});
+    for (const int cells : {4, 8, 16})
+      if (scene.stand.trees.size() > 1)
+        all.push_back({.method = "stand",
+                       .setting = static_cast<double>(cells),
+                       .work = 5e5,
+                       .contestant = std::make_unique<StandContestant>(scattering, cells, band)});
     for (const int cells : {8, 16, 24, 32})
       all.push_back({.method = "grid",
                      .setting = static_cast<double>(cells),

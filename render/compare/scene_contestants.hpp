@@ -28,14 +28,15 @@ class SceneContestant {
 
 struct NamedSceneContestant {
   std::string method;   // "ss", "sppg" ..., "monte_carlo"
-  double setting = 0.;  // what it is computed with: axes of lines of the field, cells along a tree,
+  double setting = 0.;  // what it is computed with: axes of lines of the field, cells along a tree
+                        // of the grid alone, or of the stand's,
                         // paths of Monte Carlo; 0: no choice
   double work = 1.;     // share of a round's time, roughly, for progress
   std::unique_ptr<SceneContestant> contestant;
 };
 
-// The models, the field with several numbers of axes, the same on cells alone, and Monte Carlo, which does not know the
-// random numbers of seed `trace.seed` itself.
+// The models, the field with several numbers of axes, the same on cells alone, of several trees each by itself in the
+// light of the others in cells, and Monte Carlo, which does not know the random numbers of seed `trace.seed` itself.
 //   scene  must outlive them
 //   paths  of Monte Carlo, of each contestant; each at least kLeastUnits
 std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const std::vector<Model>& models,

@@ -25,7 +25,10 @@ DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry, const O
     drawn.tree = scene.kinds[of_stand.kind];
     drawn.tree.mesh = of_stand.mesh;
     if (!of_stand.stands) continue;
-    if (geometry.field()) drawn.field_places = geometry.field()->places(of_stand.kind);
+    if (geometry.field()) {
+      drawn.field_places = geometry.field()->places(of_stand.kind);
+      drawn.far_field_places = geometry.field()->farPlaces(of_stand.kind);
+    }
     const CellGrid& cells = geometry.cells(kind);
     drawn.cells = {.low = cells.low, .cell_size = cells.cell_size, .size = cells.size};
     for (std::size_t light = 0; light < stand.lights.size(); ++light) {
@@ -41,7 +44,10 @@ DrawnStand drawnStand(const Scene& scene, const StandGeometry& geometry, const O
     drawn.kind = static_cast<std::uint32_t>(geometry.kindOf(tree));
     for (std::size_t light = 0; light < stand.lights.size(); ++light)
       drawn.compensation[light] = {geometry.compensation(tree, light), geometry.compensationRevision(tree, light)};
-    if (geometry.field()) drawn.field = {geometry.field()->sides(tree), geometry.field()->revision()};
+    if (geometry.field()) {
+      drawn.field = {geometry.field()->sides(tree), geometry.field()->revision()};
+      drawn.far = geometry.field()->isFar(tree);
+    }
     drawn.sky_light = {geometry.skyLight(tree), geometry.skyLightRevision(tree)};
   }
   stand.period = scene.stand.period;

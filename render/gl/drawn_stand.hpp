@@ -41,6 +41,7 @@ struct DrawnKind {
   std::vector<LightMap> maps;  // of each light
   // Of each triangle of the mesh, leaves before wood, its place in the light field; empty where that is not told.
   std::span<const std::uint32_t> field_places;
+  std::span<const std::uint32_t> far_field_places;  // the same in trees that are far
 };
 
 // Values of all cells of a tree, or of all its places in the light field, or of the ground; another revision whenever
@@ -58,6 +59,7 @@ struct DrawnTree {
   TreeValues<glm::vec3> sky_light;                          // mean radiance; where not told, 0 [1/sr]
   // (F26) Irradiance of the front and the back of each place by all but the suns' direct light [1].
   TreeValues<glm::vec3> field;
+  bool far = false;  // whether its places are those of trees that are far
 };
 
 struct DrawnStand {

@@ -1,5 +1,6 @@
 #include "render/gl/field_texture.hpp"
 
+#include <algorithm>
 #include <glm/vec4.hpp>
 
 namespace sunfleck::gl {
@@ -47,11 +48,17 @@ std::size_t FieldTexture::update(const DrawnStand& stand, const std::vector<cons
 }
 
 std::size_t FieldTexture::sendPlaces(const DrawnStand& stand, const std::vector<const TreeLevels*>& levels) {
+  // Those of all kinds in trees that are far follow those in the others.
   std::vector<std::uint32_t> all;
-  for (std::size_t kind = 0; kind < levels.size(); ++kind) {
-    const std::span<const std::uint32_t> places = stand.kinds[kind].field_places;
-    for (const std::uint32_t source : levels[kind]->sources)
-      all.push_back(source < places.size() ? places[source] : 0u);
+  const bool any_far = std::ranges::any_of(stand.trees, &DrawnTree::far);
+  for (const bool far : {false, true}) {
+    if (far && !any_far) continue;
+    for (std::size_t kind = 0; kind < levels.size(); ++kind) {
+      const DrawnKind& of_kind = stand.kinds[kind];
+      const std::span<const std::uint32_t> places = far ? of_kind.far_field_places : of_kind.field_places;
+      for (const std::uint32_t source : levels[kind]->sources)
+        all.push_back(source < places.size() ? places[source] : 0u);
+    }
   }
   if (all == held_places_) return 0;
   places_.assign(std::span<const std::uint32_t>(all));

@@ -52,6 +52,7 @@ struct Tree {
   uint kind;
   vec3 cells;     // first of its cells in their texture
   bool has_cells;
+  bool far;       // whether its places in the light field are those of trees that are far
   uint field;     // one more than its first place in the light field; 0: none is told
 };
 layout(binding = 12) uniform usamplerBuffer trees;
@@ -60,7 +61,7 @@ Tree treeAt(uint number) {
 #ifdef ONE_KIND
   stands.w = 0u;
 #endif
-  return Tree(uintBitsToFloat(stands.xyz), stands.w, vec3(block.xyz), (block.w & 1u) != 0u, block.w >> 1);
+  return Tree(uintBitsToFloat(stands.xyz), stands.w, vec3(block.xyz), (block.w & 1u) != 0u, (block.w & 2u) != 0u, block.w >> 2);
 }
 
 #ifdef ONE_KIND

@@ -120,7 +120,7 @@ vec3 skyTowards(vec3 to_sky) {
 // (F26) What a leaf or wood sends of the light field.
 vec3 byField(Place place, Tree tree, uint triangle) {
   if (tree.field == 0u) return vec3(0.0);
-  int number = int(kind_frames[tree.kind].cell_count.w + triangle);
+  int number = int(kind_frames[tree.kind].cell_count.w + triangle) + (tree.far ? textureSize(field_places) / 2 : 0);
   int at = 2 * int(tree.field - 1u + texelFetch(field_places, number).r), seen = place.front ? at : at + 1;
   return shadeBySides(place.surface, texelFetch(field_light, seen).rgb,
                       texelFetch(field_light, place.front ? at + 1 : at).rgb).scattered;

@@ -141,10 +141,11 @@ std::size_t StandData::updateSky(const DrawnStand& stand) {
 std::size_t StandData::updateTrees(const DrawnStand& stand) {
   std::vector<TreeData> trees;
   for (std::size_t tree = 0; tree < stand.trees.size(); ++tree)
-    trees.push_back({.position = stand.trees[tree].position,
-                     .kind = stand.trees[tree].kind,
-                     .cells = glm::uvec3(cells_.corner(tree)),
-                     .told = (cells_.has(tree) ? 1u : 0u) | field_.place(tree) << 1});
+    trees.push_back(
+        {.position = stand.trees[tree].position,
+         .kind = stand.trees[tree].kind,
+         .cells = glm::uvec3(cells_.corner(tree)),
+         .told = (cells_.has(tree) ? 1u : 0u) | (stand.trees[tree].far ? 2u : 0u) | field_.place(tree) << 2});
   std::vector<Standing> drawn;
   for (Kind& kind : kinds_) kind.drawn.clear();
   box_ = {};

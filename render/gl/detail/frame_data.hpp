@@ -30,7 +30,7 @@ struct TreeData {
   glm::vec3 position{0.f};
   std::uint32_t kind = 0;
   glm::uvec3 cells{0u};
-  std::uint32_t told = 0;  // bit 0: whether it has cells; above: field
+  std::uint32_t told = 0;  // bit 0: whether it has cells; bit 1: far; above: field
 };
 
 struct DrawnData {
