@@ -77,12 +77,19 @@ class LargeStandField {
   struct Kind;
   struct Turn;
   struct Lit;
+  struct Sent;
 
   void makeKinds();
   void makeCells();
   void makeSuns(std::span<const std::size_t> seen);
   void solveCells();
   void solveTrees(std::span<const std::size_t> seen);
+  Sent sent() const;
+  const std::vector<Direction>& exchangeDirections() const;
+  CellsAlong cellsAlong(const Direction& s, std::span<const float> sent) const;
+  LitTree litTree(std::size_t number) const;
+  std::vector<std::vector<float>> lightAtWalls(std::span<const std::size_t> now, const Sent& sent);
+  void solveAlongLines(std::span<const std::size_t> now, std::span<const std::vector<float>> around);
   void tellFar(std::span<const std::size_t> far);
   void requireMemory(const FieldLighting& lighting, std::span<const std::size_t> seen,
                      std::span<const std::size_t> far);

@@ -116,8 +116,8 @@ TEST(F3_StandSun, LosesNoLineOfASunOverAStandThatRepeats) {
 }
 
 // Check a tree that stands alone, in a sun and under a sky: what comes to it from outside is then the sky's light
-// alone, along the very lines of LeafField, and all must agree to the iteration's error of 1e-3 and the pixels of the
-// sun's picture, of which an element has a hundred here.
+// alone, along the very lines of LeafField. What they differ by, 1.3 % of a leaf's light when this was written, is that
+// LeafField scatters the sun's light from where it falls and lets light go back where it came from (F6, F7).
 TEST(F29_LargeStand, LightsATreeAloneAsItsLinesDo) {
   const auto tree = crown(3);
   const std::array kinds{tree};
@@ -136,7 +136,7 @@ TEST(F29_LargeStand, LightsATreeAloneAsItsLinesDo) {
     off += std::pow(both(found.trees[0][leaf].scattered[0]) - expected, 2);
     squares += expected * expected;
   }
-  EXPECT_LT(std::sqrt(off / squares), 0.01);
+  EXPECT_LT(std::sqrt(off / squares), 0.02);
   EXPECT_NEAR(meanOf(found.trees[0]), meanOf(truth.trees[0]), 3e-3 * meanOf(truth.trees[0]));
 }
 
