@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -18,7 +20,24 @@ namespace {
 struct PlantOptions {
   std::string input, species = "cherry", output, up = "z";
   ImportRules rules;
+  bool list = false;
+  std::vector<std::string> write_species;  // a name and a file
 };
+
+// Whether the input is to be grown: a species by its name, or by its parameter file.
+bool isGrown(const std::string& input) {
+  const std::vector<std::string> names = speciesNames();
+  return input.empty() || std::filesystem::path(input).extension() == ".toml" ||
+         std::find(names.begin(), names.end(), input) != names.end();
+}
+
+int writeSpecies(const std::string& name, const std::string& file) {
+  const std::string_view text = speciesText(name);
+  requireNamed(file, ".toml");
+  writeWhole(file, text);
+  fmt::print("wrote {}\n", file);
+  return 0;
+}
 
 struct Crown {
   double projected_area;              // of the crown on the ground [m^2]
@@ -39,14 +58,20 @@ Crown crownOf(const TreeMesh& mesh) {
 }
 
 int runPlant(PlantOptions options, const RunOptions& run) {
+  if (options.list) {
+    for (const std::string& name : speciesNames()) fmt::print("{}\n", name);
+    return 0;
+  }
+  if (!options.write_species.empty()) return writeSpecies(options.write_species[0], options.write_species[1]);
   if (!options.output.empty()) requireWritable(options.output);
   options.rules.up = options.up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
   TreeMesh mesh;
   std::string source, how;
   Dropped dropped;
-  if (options.input.empty()) {
-    mesh = grow(species(options.species), run.seed);
-    source = fmt::format("{}, seed {}", options.species, run.seed);
+  if (isGrown(options.input)) {
+    const std::string& kind = options.input.empty() ? options.species : options.input;
+    mesh = grow(speciesOrFile(kind), run.seed);
+    source = fmt::format("{}, seed {}", kind, run.seed);
   } else {
     ImportedTree imported = importTree(options.input, options.rules);
     mesh = std::move(imported.mesh);
@@ -97,11 +122,15 @@ void addPlant(CLI::App& app, RunOptions& options, int& status) {
   auto plant = std::make_shared<PlantOptions>();
   CLI::App* command =
       addCommand(app, options, "plant", "Grow a tree, or read one, and tell its leaves; write it as OBJ");
-  CLI::Option* input =
-      command->add_option("input", plant->input, "A mesh to read (.obj, .ply) instead of growing a tree");
+  CLI::Option* input = command->add_option("input", plant->input,
+                                           "A species to grow by its name or its parameter file (.toml), or a mesh to "
+                                           "read (.obj, .ply)");
   command->add_option("--species", plant->species,
-                      fmt::format("What to grow: {} (default cherry); --seed grows another one of it",
-                                  fmt::join(speciesNames(), ", ")));
+                      "What to grow, as above (default cherry); --seed grows another one of it");
+  command->add_flag("--list", plant->list, "Print the names of the species there are");
+  command
+      ->add_option("--write-species", plant->write_species, "NAME FILE.toml: write a species' parameters, to be edited")
+      ->expected(2);
   command->add_option("-o,--output", plant->output, "File to write: .obj, with its .mtl beside it");
   command->add_option("--leaf", plant->rules.leaf,
                       "Materials or groups of the mesh that are leaves, such as 'leaf*'; '*' takes all");

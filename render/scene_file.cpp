@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/detail/toml_file.hpp"
 #include "core/require.hpp"
 #include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
@@ -14,7 +15,6 @@
 #include "render/detail/scene_light_file.hpp"
 #include "render/detail/scene_media_file.hpp"
 #include "render/detail/scene_table.hpp"
-#include "render/detail/toml_file.hpp"
 #include "render/image_file.hpp"
 #include "render/radians.hpp"
 
@@ -31,11 +31,12 @@ TreeKind kindWith(const LeafOptics& leaf) {
   return kind;
 }
 
+// `species_name`: a name, or a parameter file.
 void growTree(TreeKind& kind, const std::string& species_name, std::uint64_t seed) {
-  kind.mesh = std::make_shared<const TreeMesh>(grow(species(species_name), seed));
+  kind.mesh = std::make_shared<const TreeMesh>(grow(speciesOrFile(species_name), seed));
   kind.source = fmt::format("species {}, seed {}", species_name, seed);
   kind.recipe = {.species = species_name, .seed = seed, .file = {}, .rules = {}};
-  kind.name = species_name;
+  kind.name = std::filesystem::path(species_name).stem().string();
 }
 
 void importFile(TreeKind& kind, const std::filesystem::path& file, const ImportRules& rules) {
@@ -101,7 +102,9 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
     importFile(kind, folder / tree.text("file", ""), rules);
   } else {
     const std::string name = tree.text("species", "cherry");
-    growTree(kind, name, static_cast<std::uint64_t>(tree.count("seed", 1, std::numeric_limits<int>::max())));
+    const bool by_file = std::filesystem::path(name).extension() == ".toml";
+    growTree(kind, by_file ? (folder / name).string() : name,
+             static_cast<std::uint64_t>(tree.count("seed", 1, std::numeric_limits<int>::max())));
   }
   kind.name = tree.text("name", kind.name);
   readOptics(kind, tree, "leaf_", tree, "wood_");
@@ -361,7 +364,7 @@ Lengths are metres, z is up. Optics and irradiances are one number, or three for
 name = "file name"            # what reports call it
 
 [tree]                        # the prototype: grown, or read from a file
-species = "cherry"            # see: sunfleck plant --help
+species = "cherry"            # see: sunfleck plant --list; or a parameter file (.toml) beside the scene file
 seed = 1
 # file = "tree.obj"           # .obj or .ply beside the scene file, instead of species
 # leaf = "leaf*"              # materials or groups of the file that are leaves, or a list of such ...

@@ -146,7 +146,8 @@ class Writer {
     table("tree", of_several);
     const TreeRecipe& recipe = kind.recipe;
     if (!recipe.species.empty()) {
-      key("species", quoted(recipe.species));
+      const bool by_file = fs::path(recipe.species).extension() == ".toml";
+      key("species", by_file ? path(recipe.species) : quoted(recipe.species));
       key("seed", std::to_string(recipe.seed));
     } else if (!recipe.file.empty()) {
       key("file", path(recipe.file));

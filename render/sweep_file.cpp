@@ -10,7 +10,7 @@
 
 #include "core/require.hpp"
 #include "render/detail/scene_table.hpp"
-#include "render/detail/toml_file.hpp"
+#include "core/detail/toml_file.hpp"
 
 namespace sunfleck {
 namespace {
