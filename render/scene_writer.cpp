@@ -154,7 +154,8 @@ class Writer {
       if (!recipe.rules.leaf.empty()) key("leaf", texts(recipe.rules.leaf));
       if (!recipe.rules.wood.empty()) key("wood", texts(recipe.rules.wood));
       key("scale", number(recipe.rules.scale));
-      key("up", recipe.rules.up == ImportRules::Up::y ? "\"y\"" : "\"z\"");
+      if (recipe.rules.up != ImportRules::Up::of_format)
+        key("up", recipe.rules.up == ImportRules::Up::y ? "\"y\"" : "\"z\"");
     } else {
       refuse(fmt::format("its trees \"{}\" came from no species and no file", kind.name));
     }
