@@ -60,15 +60,15 @@ TEST(StandLayout, JitterMovesAsFarAsItSays) {
   EXPECT_EQ(gridStand({20.f, 20.f}, 5.f, 0.6f, 7), gridStand({20.f, 20.f}, 5.f, 0.6f, 7));
 }
 
-// Check that Poisson discs do not overlap and leave no room: on a rectangle without a border there are between the 0.55
-// of a random packing that has just closed and the 0.75 of one that is tried on and on, of discs of half the distance;
-// the rectangle's border adds half a distance all around.
+// Check that Poisson discs do not overlap and leave no room. Discs thrown at random close at 0.547 of the area (Feder
+// 1980); those thrown about others pack a little closer, 30 tries leave some room, and the discs of half the distance
+// reach over the rectangle's border by less than half a distance: 0.4 to 0.6 of the area so enlarged.
 TEST(StandLayout, PoissonDiscsDoNotOverlap) {
   const std::vector<Placement> trees = poissonStand({60.f, 40.f}, 3.f, 5);
   EXPECT_GE(leastDistance(trees), 3.f - 1e-5f);  // rounding of floats of up to 30 m
   const double filled = static_cast<double>(trees.size()) * std::numbers::pi * 2.25 / (63. * 43.);
-  EXPECT_GT(filled, 0.45);
-  EXPECT_LT(filled, 0.75);
+  EXPECT_GT(filled, 0.4);
+  EXPECT_LT(filled, 0.6);
   for (const Placement& tree : trees) {
     EXPECT_LE(std::abs(tree.position.x), 30.f);
     EXPECT_LE(std::abs(tree.position.y), 20.f);
