@@ -98,7 +98,7 @@ does "weeping_willow" plant --list
 does "wrote stand.toml" plant leaf.obj --stand poisson --spacing 4 --area 20 20 -o stand.toml
 printf 'x,y,rotation_deg,species\n0,0,0,my.toml\n9,0,45,my.toml\n' >positions.csv
 does "2 trees of 1 kinds" plant --stand positions.csv -o stand.toml
-does "reflected" trace stand.toml --paths 1000
+does "absorbed by leaves" trace stand.toml --paths 1000
 does "2 trees" plant --stand positions.csv -o stand.glb
 does "wrote e.vdb: 9.4" plant turbid_ellipsoid --density 1.5 -o e.vdb
 does "90 (180 triangles)" plant random_crown --leaves 90 -o crown.ply
