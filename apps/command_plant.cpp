@@ -1,94 +1,215 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "apps/commands.hpp"
+#include "apps/plant_report.hpp"
+#include "apps/plant_stand.hpp"
+#include "apps/thumbnail.hpp"
+#include "apps/version.hpp"
+#include "core/require.hpp"
 #include "core/whole_file.hpp"
-#include "grid/deep_opacity_map.hpp"
-#include "grid/leaf_depth.hpp"
+#include "grid/density_grid.hpp"
 #include "plants/import.hpp"
+#include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
-#include "plants/weber_penn.hpp"
+#include "plants/write_gltf.hpp"
 #include "plants/write_obj.hpp"
+#include "plants/write_ply.hpp"
+#include "render/scene_file.hpp"
 
 namespace sunfleck::apps {
 namespace {
 
+namespace fs = std::filesystem;
+
+// Simple things in place of a tree, of which the answer is known.
+constexpr const char *kRandomCrown = "random_crown", *kTurbidEllipsoid = "turbid_ellipsoid";
+
 struct PlantOptions {
-  std::string input, species = "cherry", output, up = "z";
+  std::string input, species = "cherry", output, up, thumbnail;
   ImportRules rules;
+  bool list = false;
+  std::vector<std::string> write_species;  // a name and a file
+  PlantStand stand;
+  std::vector<float> size{2.f, 2.f, 3.f};  // of test objects, full axes [m]
+  int leaves = 9000;
+  float leaf_side = 0.05f;                // [m]
+  float density = 1.f, cell_size = 0.1f;  // of a turbid ellipsoid [1/m], [m]
 };
 
-struct Crown {
-  double projected_area;              // of the crown on the ground [m^2]
-  double mean_depth, mean_thickness;  // of the leaves, light from overhead [1]
+struct Plant {
+  TreeKind kind;
+  std::string source, how;
 };
 
-Crown crownOf(const TreeMesh& mesh) {
-  const DeepOpacityMap overhead(mesh, {0.f, 0.f, -1.f}, 512);
-  std::size_t covered = 0;
-  for (std::size_t pixel = 0; pixel + 1 < overhead.first().size(); ++pixel)
-    covered += overhead.first()[pixel + 1] > overhead.first()[pixel];
-  const LeafDepths depths = leafDepths(mesh, overhead).front();
-  const auto mean = [](const std::vector<float>& v) {
-    return std::accumulate(v.begin(), v.end(), 0.) / static_cast<double>(v.size());
-  };
-  const auto pixel = static_cast<double>(overhead.pixelSize());
-  return {static_cast<double>(covered) * pixel * pixel, mean(depths.depth), mean(depths.thickness)};
+// Whether the input is to be grown: a species by its name, or by its parameter file.
+bool isGrown(const std::string& input) {
+  const std::vector<std::string> names = speciesNames();
+  return input.empty() || fs::path(input).extension() == ".toml" ||
+         std::find(names.begin(), names.end(), input) != names.end();
+}
+
+int writeSpecies(const std::string& name, const std::string& file) {
+  const std::string_view text = speciesText(name);
+  requireNamed(file, ".toml");
+  writeWhole(file, text);
+  fmt::print("wrote {}\n", file);
+  return 0;
+}
+
+// Test objects stand on the ground.
+TreeMesh randomCrownOf(const PlantOptions& options, std::uint64_t seed) {
+  const glm::vec3 size(options.size[0], options.size[1], options.size[2]);
+  TreeMesh mesh = randomCrown({.size = size, .leaf_side = options.leaf_side, .leaves = options.leaves}, seed);
+  for (glm::vec3& v : mesh.vertices) v.z += 0.5f * size.z;
+  return mesh;
+}
+
+int writeTurbidEllipsoid(const PlantOptions& options, const RunOptions& run) {
+  requireNamed(options.output, ".vdb");
+  const glm::vec3 size(options.size[0], options.size[1], options.size[2]);
+  const DensityGrid grid =
+      DensityGrid::turbidEllipsoid(size, {0.f, 0.f, 0.5f * size.z}, options.density, options.cell_size);
+  grid.write(options.output, {.name = kTurbidEllipsoid, .hash = {}, .program = versionText()});
+  if (run.json)
+    fmt::print("{}\n", nlohmann::ordered_json{{"leaf_area_m2", grid.leafArea()}, {"units", "m"}}.dump(2));
+  else
+    fmt::print("wrote {}: {:.4g} m2 of turbid leaves, for [medium] file\n", options.output, grid.leafArea());
+  return 0;
+}
+
+Plant plantOf(const PlantOptions& options, const RunOptions& run) {
+  Plant plant;
+  if (options.input == kRandomCrown) {
+    plant.kind.name = kRandomCrown;
+    plant.kind.mesh = std::make_shared<const TreeMesh>(randomCrownOf(options, run.seed));
+    plant.source = fmt::format("{}, seed {}", kRandomCrown, run.seed);
+  } else if (isGrown(options.input)) {
+    const std::string& name = options.input.empty() ? options.species : options.input;
+    plant.kind = grownKind(name, run.seed);
+    plant.source = fmt::format("{}, seed {}", name, run.seed);
+  } else {
+    ImportedTree imported = importTree(options.input, options.rules);
+    plant.kind.name = fs::path(options.input).stem().string();
+    plant.kind.recipe = {.species = {}, .file = options.input, .rules = options.rules};
+    plant.kind.dropped = imported.dropped;
+    plant.kind.mesh = std::make_shared<const TreeMesh>(std::move(imported.mesh));
+    plant.source = options.input;
+    plant.how = imported.how;
+  }
+  constexpr LeafOptics kLeaf{.reflectance = 0.475f, .transmittance = 0.475f};  // that of scene files without others
+  plant.kind.leaf.fill(kLeaf);
+  return plant;
+}
+
+void writeTree(const std::string& file, const TreeMesh& mesh) {
+  const std::string extension = fs::path(file).extension().string();
+  if (extension == ".obj")
+    writeObj(file, mesh);
+  else if (extension == ".ply")
+    writePly(file, mesh);
+  else
+    writeGltf(file, mesh);
+}
+
+void requireOutput(const PlantOptions& options) {
+  if (options.output.empty()) return;
+  std::vector<std::string> endings{".glb", ".gltf"};
+  if (options.stand.kind.empty())
+    endings.insert(endings.end(), {".obj", ".ply"});
+  else
+    endings.emplace_back(".toml");
+  const bool known = std::ranges::find(endings, fs::path(options.output).extension().string()) != endings.end();
+  require(known, "output file", options.output,
+          fmt::format("named with one of the extensions {}", fmt::join(endings, " ")));
+  requireWritable(options.output);
 }
 
 int runPlant(PlantOptions options, const RunOptions& run) {
-  if (!options.output.empty()) requireWritable(options.output);
-  options.rules.up = options.up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
-  TreeMesh mesh;
-  std::string source, how;
-  Dropped dropped;
-  if (options.input.empty()) {
-    mesh = grow(species(options.species), run.seed);
-    source = fmt::format("{}, seed {}", options.species, run.seed);
-  } else {
-    ImportedTree imported = importTree(options.input, options.rules);
-    mesh = std::move(imported.mesh);
-    dropped = imported.dropped;
-    how = imported.how;
-    source = options.input;
+  if (options.list) {
+    for (const std::string& name : speciesNames()) fmt::print("{}\n", name);
+    return 0;
   }
-  if (!options.output.empty()) writeObj(options.output, mesh);
+  if (!options.write_species.empty()) return writeSpecies(options.write_species[0], options.write_species[1]);
+  if (options.input == kTurbidEllipsoid) return writeTurbidEllipsoid(options, run);
+  requireOutput(options);
+  if (!options.thumbnail.empty()) requireNamed(options.thumbnail, ".png");
+  options.rules.up = options.up == "y"   ? ImportRules::Up::y
+                     : options.up == "z" ? ImportRules::Up::z
+                                         : ImportRules::Up::of_format;
+  const Plant plant = plantOf(options, run);
+  const TreeMesh& mesh = *plant.kind.mesh;
+  std::optional<Scene> stand;
+  if (!options.stand.kind.empty()) stand = plantStand(options.stand, plant.kind, run.seed);
+  if (!options.output.empty() && stand) writeStand(options.output, *stand);
+  if (!options.output.empty() && !stand) writeTree(options.output, mesh);
+  if (!options.thumbnail.empty()) writeThumbnail(options.thumbnail, mesh);
 
-  const Crown crown = crownOf(mesh);
-  const double area = leafArea(mesh);
-  // Leaves that are all upright cover nothing from above: there is no index then.
-  const double lai = crown.projected_area > 0. ? area / crown.projected_area : 0.;
+  const PlantReport report(mesh, plant.source, plant.how, plant.kind.dropped);
+  double stand_area = 0.;  // of all leaves [m^2]
+  if (stand)
+    for (const Placement& tree : stand->stand.trees) stand_area += leafArea(*stand->kindOf(tree).mesh);
   if (run.json) {
-    const nlohmann::ordered_json result{{"leaves", mesh.leaf_count},
-                                        {"leaf_triangles", mesh.leaf_triangles.size()},
-                                        {"leaf_area_m2", area},
-                                        {"wood_triangles", mesh.wood_triangles.size()},
-                                        {"lai", lai},
-                                        {"units", "m"},
-                                        {"mean_depth", crown.mean_depth},
-                                        {"mean_thickness", crown.mean_thickness},
-                                        {"dropped_leaf_triangles", dropped.leaf_triangles},
-                                        {"dropped_wood_triangles", dropped.wood_triangles}};
+    nlohmann::ordered_json result = report.json();
+    if (stand) result["stand"] = {{"trees", stand->stand.trees.size()}, {"leaf_area_m2", stand_area}};
     fmt::print("{}\n", result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
-  const glm::vec3 size = bounds(mesh).size();
-  fmt::print("{}\n", source);
-  if (!how.empty()) fmt::print("  leaf and wood  {}\n", how);
-  fmt::print("  leaves         {} ({} triangles), {:.4g} m2 of one side\n", mesh.leaf_count, mesh.leaf_triangles.size(),
-             area);
-  fmt::print("  wood           {} triangles\n", mesh.wood_triangles.size());
-  if (dropped.leaf_triangles + dropped.wood_triangles > 0)
-    fmt::print("  dropped        {} leaf and {} wood triangles of no area\n", dropped.leaf_triangles,
-               dropped.wood_triangles);
-  fmt::print("  size           {:.3g} x {:.3g} x {:.3g} m\n", size.x, size.y, size.z);
-  fmt::print("  leaf area      {:.3g} times the crown's projection on the ground\n", lai);
-  fmt::print("  from overhead  a leaf lies {:.2f} leaves deep in {:.2f} on average\n", crown.mean_depth,
-             crown.mean_thickness);
-  if (!options.output.empty()) fmt::print("wrote {}\n", options.output);
+  fmt::print("{}", report.text());
+  if (stand)
+    fmt::print("  stand          {} trees of {} kinds, {:.4g} m2 of leaves\n", stand->stand.trees.size(),
+               stand->kinds.size(), stand_area);
+  for (const std::string& file : {options.output, options.thumbnail})
+    if (!file.empty()) fmt::print("wrote {}\n", file);
   return 0;
+}
+
+void addStandOptions(CLI::App& command, PlantOptions& plant) {
+  const std::string group = "Stand";
+  CLI::Option* stand =
+      command.add_option("--stand", plant.stand.kind,
+                         "Plant many, into a scene file (.toml) or .glb: regular, jittered, poisson (no "
+                         "crowns overlap) or a .csv file of x,y[,rotation_deg[,species]]");
+  stand->group(group);
+  command.add_option("--area", plant.stand.area, "Sides of the rectangle [m] (default 5 times the spacing)")
+      ->expected(2)
+      ->check(numberIn(1e-3, 1e6, "in [1e-3, 1e6] m"))
+      ->group(group)
+      ->needs(stand);
+  command
+      .add_option("--spacing", plant.stand.spacing,
+                  "Between trees, of poisson the least [m] (default the crown's width)")
+      ->check(numberIn(1e-3, 1e6, "in [1e-3, 1e6] m"))
+      ->group(group)
+      ->needs(stand);
+  command.add_option("--jitter", plant.stand.jitter, "Of jittered: moves over half of the spacing (default 0.5)")
+      ->check(numberIn(0., 1., "in [0, 1]"))
+      ->group(group)
+      ->needs(stand);
+}
+
+void addTestObjectOptions(CLI::App& command, PlantOptions& plant) {
+  const std::string group = "Test objects random_crown and turbid_ellipsoid";
+  command.add_option("--size", plant.size, "Full axes of the ellipsoid [m] (default 2 2 3)")
+      ->expected(3)
+      ->check(numberIn(1e-3, 1e3, "in [1e-3, 1000] m"))
+      ->group(group);
+  command.add_option("--leaves", plant.leaves, "Leaves of a random crown (default 9000)")
+      ->transform(wholeNumberIn(1, 2e7, "a whole number, 1 to 2e7"))
+      ->group(group);
+  command.add_option("--leaf-side", plant.leaf_side, "Side of its square leaves [m] (default 0.05)")
+      ->check(numberIn(1e-4, 10., "in [1e-4, 10] m"))
+      ->group(group);
+  command.add_option("--density", plant.density, "Leaf area density of a turbid ellipsoid [1/m] (default 1)")
+      ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6] 1/m"))
+      ->group(group);
+  command.add_option("--cell-size", plant.cell_size, "Side of its cells [m] (default 0.1)")
+      ->check(numberIn(2e-5, 1e3, "in [2e-5, 1000] m"))
+      ->group(group);
 }
 
 }  // namespace
@@ -96,22 +217,31 @@ int runPlant(PlantOptions options, const RunOptions& run) {
 void addPlant(CLI::App& app, RunOptions& options, int& status) {
   auto plant = std::make_shared<PlantOptions>();
   CLI::App* command =
-      addCommand(app, options, "plant", "Grow a tree, or read one, and tell its leaves; write it as OBJ");
-  CLI::Option* input =
-      command->add_option("input", plant->input, "A mesh to read (.obj, .ply) instead of growing a tree");
+      addCommand(app, options, "plant", "Grow a tree or a stand of trees, or read one; tell its leaves and write it");
+  CLI::Option* input = command->add_option("input", plant->input,
+                                           "A species to grow by its name or its parameter file (.toml), a mesh to "
+                                           "read (.obj, .ply, .gltf, .glb), or a test "
+                                           "object: random_crown, or turbid_ellipsoid into a .vdb");
   command->add_option("--species", plant->species,
-                      fmt::format("What to grow: {} (default cherry); --seed grows another one of it",
-                                  fmt::join(speciesNames(), ", ")));
-  command->add_option("-o,--output", plant->output, "File to write: .obj, with its .mtl beside it");
+                      "What to grow, as above (default cherry); --seed grows another one of it");
+  command->add_flag("--list", plant->list, "Print the names of the species there are");
+  command
+      ->add_option("--write-species", plant->write_species, "NAME FILE.toml: write a species' parameters, to be edited")
+      ->expected(2);
+  command->add_option("-o,--output", plant->output,
+                      "File to write: .obj, with its .mtl beside it, .ply, .glb or .gltf");
+  command->add_option("--thumbnail", plant->thumbnail, "A small picture to write: .png");
   command->add_option("--leaf", plant->rules.leaf,
                       "Materials or groups of the mesh that are leaves, such as 'leaf*'; '*' takes all");
   command->add_option("--wood", plant->rules.wood, "Materials or groups of the mesh that are wood");
   command->add_option("--scale", plant->rules.scale, "Metres per unit of the mesh (default 1)")
       ->check(numberIn(1e-9, 1e9, "in [1e-9, 1e9]"));
-  command->add_option("--up", plant->up, "Upward axis of the mesh: z or y (default z)")
+  command->add_option("--up", plant->up, "Upward axis of the mesh: z or y (default: y of glTF, else z)")
       ->check(CLI::IsMember({"z", "y"}));
   command->get_option("--species")->excludes(input);
   for (const char* of_input : {"--leaf", "--wood", "--scale", "--up"}) command->get_option(of_input)->needs(input);
+  addStandOptions(*command, *plant);
+  addTestObjectOptions(*command, *plant);
   command->callback([plant, &options, &status] { status = runPlant(*plant, options); });
 }
 

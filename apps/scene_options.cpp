@@ -56,7 +56,7 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
   command.add_option("--scale", options.scale, "Metres per unit of the mesh (default 1)")
       ->check(numberIn(1e-9, 1e9, "in [1e-9, 1e9]"))
       ->group(group);
-  command.add_option("--up", options.up, "Upward axis of the mesh: z or y (default z)")
+  command.add_option("--up", options.up, "Upward axis of the mesh: z or y (default: y of glTF, else z)")
       ->check(CLI::IsMember({"z", "y"}))
       ->group(group);
 }
@@ -70,7 +70,7 @@ void requireMeshFor(const SceneOptions& options) {
   const char* given = !options.leaf.empty()   ? "--leaf"
                       : !options.wood.empty() ? "--wood"
                       : options.scale != 1.f  ? "--scale"
-                      : options.up != "z"     ? "--up"
+                      : !options.up.empty()   ? "--up"
                                               : nullptr;
   if (given) throw InvalidInput(fmt::format("{}: must be for a mesh file, not for {}", given, options.scene));
 }
@@ -96,7 +96,9 @@ Scene readScene(const SceneOptions& options, Media media, Treeless treeless) {
   rules.leaf = options.leaf;
   rules.wood = options.wood;
   rules.scale = options.scale;
-  rules.up = options.up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
+  rules.up = options.up == "y"   ? ImportRules::Up::y
+             : options.up == "z" ? ImportRules::Up::z
+                                 : ImportRules::Up::of_format;
   Scene scene = sunfleck::readScene(options.scene, rules);
   if (media == Media::refused && !scene.media.empty())
     throw InvalidInput(options.scene + ": has a [medium], which trace alone takes");

@@ -15,7 +15,7 @@ struct SceneOptions {
   std::string scene = "cherry";
   std::vector<std::string> leaf, wood;  // patterns for mesh files
   float scale = 1.f;
-  std::string up = "z";
+  std::string up;
   std::optional<float> albedo;  // reflectance = transmittance = albedo / 2 in all bands
   std::optional<double> sun_zenith_deg, sun_azimuth_deg;
   std::string date;                          // and time, as in 2003-10-17T12:30:30-07:00

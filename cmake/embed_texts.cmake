@@ -1,20 +1,22 @@
 # Writes OUTPUT, a C++ file that holds the FILES (paths below ROOT) as text, so that an installed program needs none of
-# them: cmake -D ROOT=... -D OUTPUT=... -D "FILES=a;b" -P embed_texts.cmake
+# them: std::span<const TYPE> FUNCTION(), each with a path and a text, in NAMESPACE, as HEADER declares it.
+# cmake -D ROOT=... -D OUTPUT=... -D HEADER=... -D NAMESPACE=... -D TYPE=... -D FUNCTION=... -D "FILES=a;b"
+#   -P embed_texts.cmake
 set(entries "")
 foreach(file IN LISTS FILES)
   file(READ "${ROOT}/${file}" text)
   string(APPEND entries "    {\"${file}\", R\"embedded(${text})embedded\"},\n")
 endforeach()
 file(WRITE "${OUTPUT}" "// Made by cmake/embed_texts.cmake from the files it names.
-#include \"render/gl/detail/embedded_text.hpp\"
+#include \"${HEADER}\"
 
-namespace sunfleck::gl::detail {
+namespace ${NAMESPACE} {
 namespace {
-constexpr EmbeddedText kTexts[] = {
+constexpr ${TYPE} kTexts[] = {
 ${entries}};
 }  // namespace
-std::span<const EmbeddedText> embeddedTexts() {
+std::span<const ${TYPE}> ${FUNCTION}() {
   return kTexts;
 }
-}  // namespace sunfleck::gl::detail
+}  // namespace ${NAMESPACE}
 ")

@@ -55,6 +55,14 @@ class DensityGrid {
                                    std::span<const BandOptics> optics = {}, const Progress& progress = {});
   static DensityGrid voxelizeStand(const TreeMesh& mesh, const Stand& stand, float cell_size);  // trees of one kind
 
+  // Turbid leaves of one density, with all orientations alike, in an ellipsoid: a crown whose answer theory knows.
+  // Cells on its surface hold their share of it, by 64 samples each.
+  //   size       full axes [m], > 0; at most 512 cells
+  //   density    leaf area density within [1/m], > 0 .. 1e6
+  //   cell_size  [m], > 0
+  // Throws InvalidInput on what is out of its range.
+  static DensityGrid turbidEllipsoid(const glm::vec3& size, const glm::vec3& centre, float density, float cell_size);
+
   // Reads the grid named "density" of a .vdb file and, where the file has them, the second moments "normal_xx" and so
   // on, the optics "reflectance_red" and so on, and "wood". Throws InvalidInput on a file that is missing, empty, cut
   // short or corrupt, holds no density or one of these that is not of floats, lies in other cells or has values that

@@ -27,4 +27,10 @@ double downAngle(const WeberPenn::Level& level, double towards_base, Random& ran
   return radians(angle);
 }
 
+void fanOut(Frame& frame, const WeberPenn::Level& level, double share, Random& random) {
+  const double spread = std::abs(double{level.rotate}) * (share - 0.5) + vary(random, double{level.rotate_v});
+  frame.turn(frame.up(), radians(spread));
+  frame.turn(frame.right, downAngle(level, 0.5, random));
+}
+
 }  // namespace sunfleck::detail

@@ -5,6 +5,7 @@
 
 #include "core/bounds.hpp"
 #include "core/require.hpp"
+#include "plants/detail/gltf.hpp"
 #include "plants/detail/input_file.hpp"
 #include "plants/detail/leaf_or_wood.hpp"
 #include "plants/detail/obj.hpp"
@@ -26,13 +27,17 @@ std::string extensionOf(const std::filesystem::path& path) {
 ImportedTree readNameless(const std::string& text, const std::string& source, const ImportRules& rules) {
   const bool all_leaf = rules.leaf.empty() || rules.leaf == std::vector<std::string>{"*"};
   if (!all_leaf || !rules.wood.empty())
-    throw InvalidInput(source + ": a PLY has no names that --leaf or --wood could match: all of it is leaf");
-  return {.mesh = detail::readPly(text, source), .dropped = {}, .how = "a PLY has no names: every face is leaf"};
+    throw InvalidInput(source + ": a PLY has no names that --leaf or --wood could match");
+  TreeMesh mesh = detail::readPly(text, source);
+  const std::string how =
+      mesh.wood_triangles.empty() ? "a PLY has no names: every face is leaf" : "by the faces' property wood";
+  return {.mesh = std::move(mesh), .dropped = {}, .how = how};
 }
 
-void toMetresZUp(std::vector<glm::vec3>& vertices, const ImportRules& rules) {
+void toMetresZUp(std::vector<glm::vec3>& vertices, const ImportRules& rules, bool format_y_up) {
+  const bool y_up = rules.up == ImportRules::Up::of_format ? format_y_up : rules.up == ImportRules::Up::y;
   for (glm::vec3& v : vertices) {
-    if (rules.up == ImportRules::Up::y) v = {v.x, -v.z, v.y};
+    if (y_up) v = {v.x, -v.z, v.y};
     v *= rules.scale;
   }
 }
@@ -44,18 +49,21 @@ ImportedTree importTree(const std::filesystem::path& path, const ImportRules& ru
   const std::string source = detail::shown(path.string());
   const std::string extension = extensionOf(path);
   if (extension == ".vdb" || extension == ".nvdb")
-    throw InvalidInput(source +
-                       ": holds grids and no leaves: a tree is an .obj or a .ply file (of grids, voxelize reads " +
-                       "a .vdb file)");
+    throw InvalidInput(
+        source + ": holds grids and no leaves: a tree is an .obj, .ply, .gltf or .glb file (of grids, voxelize reads " +
+        "a .vdb file)");
+  const bool is_gltf = extension == ".gltf" || extension == ".glb";
   std::string text = detail::readWhole(path);
   ImportedTree tree;
   if (extension == ".obj")
     tree = detail::readObj(path, std::move(text), rules, read_image);
   else if (extension == ".ply")
     tree = readNameless(text, source, rules);
+  else if (is_gltf)
+    tree = detail::readGltf(path, text, rules);
   else
-    throw InvalidInput(source + ": cannot be read: a tree is an .obj or a .ply file");
-  toMetresZUp(tree.mesh.vertices, rules);
+    throw InvalidInput(source + ": cannot be read: a tree is an .obj, .ply, .gltf or .glb file");
+  toMetresZUp(tree.mesh.vertices, rules, is_gltf);
   tree.dropped = finish(tree.mesh, source);
   const glm::vec3 size = bounds(tree.mesh).size();
   require(std::max({size.x, size.y, size.z}) >= kSmallestTree, source + ": size of the tree [m]",

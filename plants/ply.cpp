@@ -125,7 +125,8 @@ class PlyReader {
       else
         skip(element);
     }
-    if (mesh_.leaf_triangles.empty()) throw InvalidInput(source_ + ": has no faces, so no leaves");
+    if (mesh_.leaf_triangles.empty() && mesh_.wood_triangles.empty())
+      throw InvalidInput(source_ + ": has no faces, so no leaves");
     return std::move(mesh_);
   }
 
@@ -177,17 +178,20 @@ class PlyReader {
     if (std::count_if(element.properties.begin(), element.properties.end(), isCorners) != 1)
       throw InvalidInput(source_ + ": the faces of a PLY need one list property vertex_indices");
     std::vector<std::uint32_t> corners;
-    for (std::size_t i = 0; i < element.count; ++i)
+    for (std::size_t i = 0; i < element.count; ++i) {
+      bool wood = false;
       for (const auto& property : element.properties) {
-        if (!property.count_type) {
-          values_.next(property.type, element.name, i);
-        } else if (!isCorners(property)) {
+        if (isCorners(property)) {
+          readCorners(property, i, corners);
+        } else if (property.count_type) {
           skipList(property, element.name, i);
         } else {
-          readCorners(property, i, corners);
-          triangulate(mesh_.vertices, corners, mesh_.leaf_triangles);
+          const double value = values_.next(property.type, element.name, i);
+          wood = wood || (property.name == "wood" && value != 0.);
         }
       }
+      triangulate(mesh_.vertices, corners, wood ? mesh_.wood_triangles : mesh_.leaf_triangles);
+    }
   }
 
   void readCorners(const PlyHeader::Property& property, std::size_t face, std::vector<std::uint32_t>& corners) {

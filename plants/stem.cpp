@@ -5,6 +5,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
+#include "plants/detail/portable_math.hpp"
+
 namespace sunfleck::detail {
 namespace {
 
@@ -17,6 +19,7 @@ struct Growing {
   int segment = 0;           // the next one to grow
   double split_share = 1.;   // of the stem's seg_splits that fall to this strand
   glm::dvec2 restoring{0.};  // turn per segment that takes a split's tilt back, about the frame's (right, up) [rad]
+  glm::dvec3 axis{0.};       // of a helix
 };
 
 int dueSplits(double rate, double& debt) {
@@ -33,16 +36,21 @@ void spread(const WeberPenn::Level& level, Growing& growing, int k, int count, d
   const double tilt =
       std::max(0., radians(double{level.split_angle} + vary(random, double{level.split_angle_v})) - lean);
   const double around = roll + 2. * kPi * k / count;
-  const glm::dvec2 axis(std::cos(around), std::sin(around));
+  const glm::dvec2 axis(portable::cosine(around), portable::sine(around));
   growing.tip.turn(axis.x * growing.tip.right + axis.y * growing.tip.up(), tilt);
   growing.restoring -= axis * (tilt / std::max(1, segments_left));
-  growing.tip.turn({0., 0., 1.}, (k - 0.5 * (count - 1)) * divergence * std::sin(lean));
+  growing.tip.turn({0., 0., 1.}, (k - 0.5 * (count - 1)) * divergence * portable::sine(lean));
 }
 
 // Weber & Penn's angle between split stems about the vertical: 20 + 0.75 (30 + |declination - 90|) u^2 degrees.
 double splitDivergence(const Frame& tip, Random& random) {
   const double u = random.uniformDouble();
   return radians(20.) + 0.75 * (radians(30.) + std::abs(declination(tip) - 0.5 * kPi)) * u * u;
+}
+
+int baseSplits(const WeberPenn& parameters, Random& random) {
+  if (parameters.base_splits >= 0) return parameters.base_splits;
+  return static_cast<int>(random.uniformDouble() * (1 - parameters.base_splits));
 }
 
 void curveSegment(const WeberPenn& parameters, const Bud& bud, Growing& growing, Random& random) {
@@ -52,7 +60,13 @@ void curveSegment(const WeberPenn& parameters, const Bud& bud, Growing& growing,
   if (level.curve_back != 0.f)
     curve = 2. * double{growing.segment < 0.5 * segments ? level.curve : level.curve_back} / segments;
   Frame& tip = growing.tip;
-  if (growing.segment > 0 || bud.level > 0) {  // the trunk leaves the ground upright
+  if (level.curve_v < 0.f) {
+    constexpr double kQuarterTurn = 0.5 * kPi;
+    if (growing.segment == 0)
+      tip.turn(tip.right, radians(-double{level.curve_v}));
+    else
+      tip.turn(growing.axis, kQuarterTurn);
+  } else if (growing.segment > 0 || bud.level > 0) {  // the trunk leaves the ground upright
     tip.turn(tip.right, radians(curve + vary(random, double{level.curve_v}) / segments));
     tip.turn(tip.up(), radians(vary(random, double{level.bend_v}) / segments));
   }
@@ -63,7 +77,7 @@ void curveSegment(const WeberPenn& parameters, const Bud& bud, Growing& growing,
     const glm::dvec3 axis = glm::cross(tip.along, glm::dvec3(0., 0., 1.));
     // sin(lean): the attraction has no lever on a stem that already points up or down.
     if (glm::length(axis) > 1e-6)
-      tip.turn(glm::normalize(axis), double{parameters.attraction_up} * lean * std::sin(lean) / segments);
+      tip.turn(glm::normalize(axis), double{parameters.attraction_up} * lean * portable::sine(lean) / segments);
   }
 }
 
@@ -78,14 +92,15 @@ double vary(Random& random, double range) {
 }
 
 void Frame::turn(const glm::dvec3& unit_axis, double angle) {
-  const glm::dquat rotation = glm::angleAxis(angle, unit_axis);
+  const double sine = portable::sine(0.5 * angle);
+  const glm::dquat rotation(portable::cosine(0.5 * angle), unit_axis.x * sine, unit_axis.y * sine, unit_axis.z * sine);
   along = glm::normalize(rotation * along);
   right = rotation * right;
   right = glm::normalize(right - glm::dot(right, along) * along);
 }
 
 double declination(const Frame& frame) {
-  return std::acos(std::clamp(frame.along.z, -1., 1.));
+  return portable::arccosine(std::clamp(frame.along.z, -1., 1.));
 }
 
 double shapeRatio(WeberPenn::Shape shape, double ratio) {
@@ -95,9 +110,9 @@ double shapeRatio(WeberPenn::Shape shape, double ratio) {
     case conical:
       return 0.2 + 0.8 * r;
     case spherical:
-      return 0.2 + 0.8 * std::sin(kPi * r);
+      return 0.2 + 0.8 * portable::sine(kPi * r);
     case hemispherical:
-      return 0.2 + 0.8 * std::sin(0.5 * kPi * r);
+      return 0.2 + 0.8 * portable::sine(0.5 * kPi * r);
     case cylindrical:
     case envelope:
       return 1.;
@@ -129,7 +144,7 @@ double radiusAt(const WeberPenn& parameters, const Bud& bud, double z) {
   }
   if (bud.level == 0) {
     const double from_ground = std::max(0., 1. - 8. * z);
-    radius *= 1. + double{parameters.flare} * (std::pow(100., from_ground) - 1.) / 100.;
+    radius *= 1. + double{parameters.flare} * (portable::power(100., from_ground) - 1.) / 100.;
   }
   return radius;
 }
@@ -139,7 +154,8 @@ std::vector<Strand> growStem(const WeberPenn& parameters, const Bud& bud, SplitD
   const double step = bud.length / level.curve_res;
   std::vector<Strand> done;
   std::vector<Growing> growing;
-  growing.push_back({.strand = {}, .tip = bud.base});
+  growing.push_back({.strand = {}, .tip = bud.base, .axis = bud.base.along});
+  const int base_splits = bud.level == 0 ? baseSplits(parameters, random) : 0;
   while (!growing.empty()) {
     Growing current = std::move(growing.back());
     growing.pop_back();
@@ -151,7 +167,7 @@ std::vector<Strand> growStem(const WeberPenn& parameters, const Bud& bud, SplitD
       if (segments_left == 0) continue;
       const int splits =
           bud.level == 0 && current.segment == 0
-              ? parameters.base_splits
+              ? base_splits
               : dueSplits(double{level.seg_splits} * current.split_share, debt[static_cast<std::size_t>(bud.level)]);
       if (splits == 0) continue;
       // A strand's rate is divided at every split, so that strands grow in number steadily and not exponentially; this

@@ -1,8 +1,9 @@
 #include "plants/detail/tube.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
+
+#include "plants/detail/portable_math.hpp"
 
 namespace sunfleck::detail {
 namespace {
@@ -51,8 +52,8 @@ void addTube(const WeberPenn& parameters, const Bud& bud, const Strand& strand, 
     for (std::uint32_t side = 0; side < sides; ++side) {
       const double angle = 2. * std::numbers::pi * side / sides;
       const double lobe =
-          bud.level == 0 ? 1. + double{parameters.lobe_depth} * std::sin(double(parameters.lobes) * angle) : 1.;
-      addVertex(mesh, frame.position + radius * lobe * (std::cos(angle) * right + std::sin(angle) * up));
+          bud.level == 0 ? 1. + double{parameters.lobe_depth} * portable::sine(double(parameters.lobes) * angle) : 1.;
+      addVertex(mesh, frame.position + radius * lobe * (portable::cosine(angle) * right + portable::sine(angle) * up));
     }
     for (std::uint32_t side = 0; i > 0 && side < sides; ++side) {
       const std::uint32_t next = (side + 1) % sides;

@@ -23,7 +23,7 @@ namespace sunfleck {
 
 // How to make a prototype again: grown, or read from a file; neither of one that was made by a program.
 struct TreeRecipe {
-  std::string species;  // with its seed
+  std::string species;  // its name or its parameter file (.toml), with its seed
   std::uint64_t seed = 1;
   std::filesystem::path file;  // with its rules
   ImportRules rules;

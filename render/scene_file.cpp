@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/detail/toml_file.hpp"
 #include "core/require.hpp"
 #include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
@@ -14,7 +15,6 @@
 #include "render/detail/scene_light_file.hpp"
 #include "render/detail/scene_media_file.hpp"
 #include "render/detail/scene_table.hpp"
-#include "render/detail/toml_file.hpp"
 #include "render/image_file.hpp"
 #include "render/radians.hpp"
 
@@ -31,11 +31,12 @@ TreeKind kindWith(const LeafOptics& leaf) {
   return kind;
 }
 
+// `species_name`: a name, or a parameter file.
 void growTree(TreeKind& kind, const std::string& species_name, std::uint64_t seed) {
-  kind.mesh = std::make_shared<const TreeMesh>(grow(species(species_name), seed));
+  kind.mesh = std::make_shared<const TreeMesh>(grow(speciesOrFile(species_name), seed));
   kind.source = fmt::format("species {}, seed {}", species_name, seed);
   kind.recipe = {.species = species_name, .seed = seed, .file = {}, .rules = {}};
-  kind.name = species_name;
+  kind.name = std::filesystem::path(species_name).stem().string();
 }
 
 void importFile(TreeKind& kind, const std::filesystem::path& file, const ImportRules& rules) {
@@ -95,13 +96,16 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
     if (tree.has("leaf")) rules.leaf = tree.texts("leaf");
     if (tree.has("wood")) rules.wood = tree.texts("wood");
     rules.scale = static_cast<float>(tree.number("scale", 1., 1e-9, 1e9, "in [1e-9, 1e9]"));
-    const std::string up = tree.text("up", "z");
-    if (up != "z" && up != "y") throw InvalidInput(scene.origin + ": tree.up = \"" + up + "\": must be \"z\" or \"y\"");
-    rules.up = up == "y" ? ImportRules::Up::y : ImportRules::Up::z;
+    const std::string up = tree.text("up", "");
+    if (tree.has("up") && up != "z" && up != "y")
+      throw InvalidInput(scene.origin + ": tree.up = \"" + up + "\": must be \"z\" or \"y\"");
+    rules.up = up == "y" ? ImportRules::Up::y : up == "z" ? ImportRules::Up::z : ImportRules::Up::of_format;
     importFile(kind, folder / tree.text("file", ""), rules);
   } else {
     const std::string name = tree.text("species", "cherry");
-    growTree(kind, name, static_cast<std::uint64_t>(tree.count("seed", 1, std::numeric_limits<int>::max())));
+    const bool by_file = std::filesystem::path(name).extension() == ".toml";
+    growTree(kind, by_file ? (folder / name).string() : name,
+             static_cast<std::uint64_t>(tree.count("seed", 1, std::numeric_limits<int>::max())));
   }
   kind.name = tree.text("name", kind.name);
   readOptics(kind, tree, "leaf_", tree, "wood_");
@@ -350,8 +354,8 @@ Scene readScene(const std::string& name_or_file, const ImportRules& rules) {
     return scene;
   }
   if (std::optional<Scene> scene = builtin(name_or_file)) return *scene;
-  throw InvalidInput(fmt::format("scene \"{}\": must be a .toml, .obj or .ply file or one of: {}", name_or_file,
-                                 fmt::join(builtinScenes(), ", ")));
+  throw InvalidInput(fmt::format("scene \"{}\": must be a .toml, .obj, .ply, .gltf or .glb file or one of: {}",
+                                 name_or_file, fmt::join(builtinScenes(), ", ")));
 }
 
 std::string sceneFileHelp() {
@@ -361,14 +365,14 @@ Lengths are metres, z is up. Optics and irradiances are one number, or three for
 name = "file name"            # what reports call it
 
 [tree]                        # the prototype: grown, or read from a file
-species = "cherry"            # see: sunfleck plant --help
+species = "cherry"            # see: sunfleck plant --list; or a parameter file (.toml) beside the scene file
 seed = 1
-# file = "tree.obj"           # .obj or .ply beside the scene file, instead of species
+# file = "tree.obj"           # .obj, .ply, .gltf or .glb beside the scene file, instead of species
 # leaf = "leaf*"              # materials or groups of the file that are leaves, or a list of such ...
 # wood = "bark*"              # ... and those that are wood; told by their names if not given
                               # A material's map_d (an image of its opacity) cuts the leaves out, for trace alone
 # scale = 1.0                 # metres per unit of the file, above 0
-# up = "z"                    # the file's upward axis: "z" or "y"
+# up = "z"                    # the file's upward axis: "z" or "y"; if not given that of its format, y of glTF alone
 # name = "cherry"             # what positions call it; the species' or the file's name if not given
 # leaf_reflectance = 0.475    # its own optics, if not those of [leaf] and [wood]
 # leaf_transmittance = 0.475

@@ -146,14 +146,16 @@ class Writer {
     table("tree", of_several);
     const TreeRecipe& recipe = kind.recipe;
     if (!recipe.species.empty()) {
-      key("species", quoted(recipe.species));
+      const bool by_file = fs::path(recipe.species).extension() == ".toml";
+      key("species", by_file ? path(recipe.species) : quoted(recipe.species));
       key("seed", std::to_string(recipe.seed));
     } else if (!recipe.file.empty()) {
       key("file", path(recipe.file));
       if (!recipe.rules.leaf.empty()) key("leaf", texts(recipe.rules.leaf));
       if (!recipe.rules.wood.empty()) key("wood", texts(recipe.rules.wood));
       key("scale", number(recipe.rules.scale));
-      key("up", recipe.rules.up == ImportRules::Up::y ? "\"y\"" : "\"z\"");
+      if (recipe.rules.up != ImportRules::Up::of_format)
+        key("up", recipe.rules.up == ImportRules::Up::y ? "\"y\"" : "\"z\"");
     } else {
       refuse(fmt::format("its trees \"{}\" came from no species and no file", kind.name));
     }

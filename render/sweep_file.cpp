@@ -8,9 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "core/detail/toml_file.hpp"
 #include "core/require.hpp"
 #include "render/detail/scene_table.hpp"
-#include "render/detail/toml_file.hpp"
 
 namespace sunfleck {
 namespace {

@@ -92,6 +92,26 @@ refuses "no-such-scene" trace no-such-scene
 refuses "short.csv:2" slab --batch short.csv
 refuses "negative.csv:2" slab --batch negative.csv
 refuses "species" plant --species baobab
+does "wrote my.toml" plant --write-species cherry my.toml
+does "leaf angles" plant my.toml -o my.glb --thumbnail my.png
+does "8720 (17440 triangles)" plant my.glb
+does "weeping_willow" plant --list
+does "wrote stand.toml" plant leaf.obj --stand poisson --spacing 4 --area 20 20 -o stand.toml
+printf 'x,y,rotation_deg,species\n0,0,0,my.toml\n9,0,45,my.toml\n' >positions.csv
+does "2 trees of 1 kinds" plant --stand positions.csv -o stand.toml
+does "absorbed by leaves" trace stand.toml --paths 1000
+does "2 trees" plant --stand positions.csv -o stand.glb
+does "wrote e.vdb: 9.4" plant turbid_ellipsoid --density 1.5 -o e.vdb
+does "90 (180 triangles)" plant random_crown --leaves 90 -o crown.ply
+sed 's/^scale = .*/scale = -1.0/' my.toml >bad.toml
+refuses "bad.toml:13: tree.scale = -1: must be a number in" plant bad.toml -o bad.obj
+[ -e bad.obj ] && fail "plant: wrote a tree of wrong parameters"
+printf 'x,y\n0,nan\n' >positions.csv
+refuses "positions.csv:2" plant --stand positions.csv -o stand.toml
+refuses ".toml" plant --stand regular -o stand.obj
+refuses ".vdb" plant turbid_ellipsoid -o e.obj
+refuses "--stand" plant --spacing 3
+refuses "one of the extensions" plant -o tree.txt
 refuses "--species" plant leaf.obj --species maple
 refuses ".csv" trace leaf.obj -o x.png
 refuses ".vdb" voxelize leaf.obj -o x.txt

@@ -211,7 +211,7 @@ TEST_F(Import, BrokenObjIsRefused) {
   EXPECT_NE(refusal(file("t.obj", "\x7f\x45\x4c\x46\x02\x01\xff\xfe garbage")).find("has no faces"), std::string::npos);
   EXPECT_EQ(refusal(folder_ / "none.obj"), "none.obj: cannot be read: there is no such file");
   EXPECT_NE(refusal(folder_).find("it is a folder"), std::string::npos);
-  EXPECT_NE(refusal(file("t.xyz", "v")).find("an .obj or a .ply file"), std::string::npos);
+  EXPECT_NE(refusal(file("t.xyz", "v")).find("an .obj, .ply, .gltf or .glb file"), std::string::npos);
   EXPECT_NE(refusal(file("w.obj", kSquare + "g bark\nf 1 2 3 4\n")).find("has only wood and no leaf (group \"bark\")"),
             std::string::npos);
 }

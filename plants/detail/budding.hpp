@@ -21,4 +21,8 @@ class Phyllotaxis {
 // The child's angle to its parent [rad]; `towards_base` is 1 at the base of the parent's branched part, 0 at its tip.
 double downAngle(const WeberPenn::Level& level, double towards_base, Random& random);
 
+// Directs `frame` along a child of a fan at the parent's tip: spread evenly over `rotate` degrees, then down by the
+// child's angle. `share` [1] is its place in the fan, 0 .. 1.
+void fanOut(Frame& frame, const WeberPenn::Level& level, double share, Random& random);
+
 }  // namespace sunfleck::detail

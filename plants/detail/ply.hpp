@@ -36,8 +36,9 @@ std::size_t sizeOf(PlyHeader::Type type);  // [byte]
 // Throws InvalidInput("<source> line <n>: ...") on a header that is not PLY's.
 PlyHeader readPlyHeader(std::string_view text, const std::string& source);
 
-// Reads a PLY file's vertices and faces, all as leaf, in the file's units and axes. The mesh is not finished. No memory
-// is set aside for declared counts that the file is too short to hold. Throws InvalidInput("<source>: ...").
+// Reads a PLY file's vertices and faces in the file's units and axes: leaves, and wood where a property `wood` says so.
+// The mesh is not finished. No memory is set aside for declared counts that the file is too short to hold. Throws
+// InvalidInput("<source>: ...").
 TreeMesh readPly(std::string_view text, const std::string& source);
 
 }  // namespace sunfleck::detail
