@@ -132,7 +132,12 @@ class Solve {
     const FieldAlbedo albedo = largestAlbedo(problems_);
     weight_.resize(2 * count() + 1);
     for (std::size_t i = 0; i < count(); ++i)
-      weight_[2 * i] = weight_[2 * i + 1] = static_cast<float>(exchange_.lines[i]) * albedo.of_kinds[kinds_[i]];
+      weight_[2 * i] = weight_[2 * i + 1] =
+          static_cast<float>(exchange_.lines[i]) * albedo.of_kinds[kinds_[i]].albedo();
+    for (const ElementOptics& optics : albedo.of_kinds)
+      even_share_.push_back(optics.albedo() > 0.f
+                                ? 0.5f + 0.5f * std::abs(optics.reflectance - optics.transmittance) / optics.albedo()
+                                : 1.f);
     weight_[ground()] = periodic_ ? static_cast<float>(static_cast<double>(exchange_.all_lines)) * albedo.ground : 0.f;
   }
 
@@ -266,6 +271,13 @@ class Solve {
   // The share of radiance that comes from outside along a line that a side sends back along it.
   Lanes returned(std::size_t side) const { return returning_.back[side / 2] * optics_[kinds_[side / 2]].reflectance; }
 
+  // (F5) The square of a difference of an element's light in the norm in which scattering and exchange are symmetric.
+  void addSquares(std::size_t element, const Lanes& front, const Lanes& back, Sums& squares) const {
+    const Lanes weight = all(weight_[2 * element]);
+    const float even = even_share_[kinds_[element]];
+    addTo(squares, weight * (even * (front * front + back * back) + 2.f * (1.f - even) * front * back));
+  }
+
   // (F4) The light after one more passage, its difference from the light before it, and the sums that Anderson's
   // acceleration needs of it.
   void step(std::size_t kept, bool has_former) {
@@ -300,11 +312,8 @@ class Solve {
       }
       change_[side] = change;
       passed_[side] = passed;
-      const Lanes weight = all(weight_[side]);
-      addTo(of_block.squares, weight * change * change);
-      const Lanes light = side < ground() ? passed + direct_[side] : passed;
-      addTo(of_block.light_squares, weight * light * light);
       if (kept == 0) return;
+      const Lanes weight = all(weight_[side]);
       const Lanes weighted_change = weight * change, weighted_newest = weight * change_steps_[kept - 1][side];
       for (std::size_t j = 0; j < kept; ++j) {
         addTo(of_block.with_change[j], weighted_change * change_steps_[j][side]);
@@ -329,6 +338,10 @@ class Solve {
           addTo(of_block.down, static_cast<float>(below) * (radiance_[side] + returned(side) * ground_radiance_));
         }
         take(side, source_[side] + static_cast<float>(kPi) * perLine(side) * sum, of_block);
+        if (side % 2 == 0) continue;
+        addSquares(side / 2, change_[side - 1], change_[side], of_block.squares);
+        addSquares(side / 2, passed_[side - 1] + direct_[side - 1], passed_[side] + direct_[side],
+                   of_block.light_squares);
       }
     });
     Found total;
@@ -351,6 +364,8 @@ class Solve {
         down[lane] = static_cast<float>(total.down[lane] * exchange_.line_power / ground_area_);
     Found of_ground;
     take(ground(), source_[ground()] + down, of_ground);
+    addTo(of_ground.squares, all(weight_[ground()]) * change_[ground()] * change_[ground()]);
+    addTo(of_ground.light_squares, all(weight_[ground()]) * passed_[ground()] * passed_[ground()]);
     addFound(of_ground);
     with_change_ = total.with_change;
     if (kept > 0) with_steps_[kept - 1] = total.with_newest;
@@ -485,7 +500,8 @@ class Solve {
   Lanes ground_albedo_{}, ground_radiance_{};
   std::array<float, kLanes> scale_{};  // of direct light
   double ground_area_ = 0.;
-  std::vector<float> weight_;  // of each side in sums of squares
+  std::vector<float> weight_;      // of each side in sums of squares
+  std::vector<float> even_share_;  // of each kind: (rho + tau + |rho - tau|) / (2 (rho + tau))
   std::vector<Lanes> source_, direct_, light_, passed_, change_, radiance_;
   std::array<std::vector<Lanes>, kHistory> change_steps_, passed_steps_;
   std::array<Sums, kHistory> with_change_{};
@@ -534,11 +550,11 @@ FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems) {
   FieldAlbedo albedo;
   for (const FieldProblem& problem : problems) {
     albedo.of_kinds.resize(problem.optics.size());
-    albedo.reflectance.resize(problem.optics.size());
     for (std::size_t kind = 0; kind < problem.optics.size(); ++kind) {
       const ElementOptics& optics = problem.optics[kind];
-      albedo.of_kinds[kind] = std::max(albedo.of_kinds[kind], optics.reflectance + optics.transmittance);
-      albedo.reflectance[kind] = std::max(albedo.reflectance[kind], optics.reflectance);
+      ElementOptics& most = albedo.of_kinds[kind];
+      most.reflectance = std::max(most.reflectance, optics.reflectance);
+      most.transmittance = std::max(most.transmittance, optics.transmittance);
     }
     albedo.ground = std::max(albedo.ground, problem.ground_albedo);
   }
@@ -553,26 +569,36 @@ double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo, con
   const bool periodic = geometry.periodic;
   const std::size_t elements = kinds.size(), ground = 2 * elements;
   std::vector<KindOptics> optics(albedo.of_kinds.size());
-  for (std::size_t kind = 0; kind < optics.size(); ++kind) optics[kind].reflectance[0] = albedo.reflectance[kind];
+  for (std::size_t kind = 0; kind < optics.size(); ++kind)
+    optics[kind].reflectance[0] = albedo.of_kinds[kind].reflectance;
   const Returning returning(geometry, optics);
-  // Lanczos's method on the symmetric matrix D K D + own D^2, where D^2 is what a side sends by itself of what it gets,
-  // and K is made symmetric by the square roots of the lines' numbers.
+  // Lanczos's method on the symmetric matrix C (K + own) C. C^2 is what the sides of an element send by themselves of
+  // what comes to them, in absolute values of its eigenvalues: (rho - e) + tau of the sum of both sides and
+  // (rho - e) - tau of their difference. K is made symmetric by the square roots of the lines' numbers.
+  struct Root {
+    float same = 0.f, other = 0.f;
+  };
+  std::vector<Root> root(elements);
   std::vector<float> scale(ground + 1), own(ground + 1), from(ground + 1), to(ground + 1), before(ground + 1),
       sent(ground + 1);
-  for (std::size_t side = 0; side < ground; ++side) {
-    if (exchange.lines[side / 2] == 0) continue;
-    const std::uint32_t kind = kinds[side / 2];
-    const float sends = std::max(0.f, albedo.of_kinds[kind] - returning.back[side / 2] * albedo.reflectance[kind]) /
-                        static_cast<float>(exchange.lines[side / 2]);
-    scale[side] = std::sqrt(sends * returning.gain[side][0]);
-    own[side] = sends * returning.own[side][0];
+  for (std::size_t i = 0; i < elements; ++i) {
+    if (exchange.lines[i] == 0) continue;
+    const ElementOptics& of_kind = albedo.of_kinds[kinds[i]];
+    const float reflected = (1.f - returning.back[i]) * of_kind.reflectance;
+    const float sum = std::sqrt(std::max(0.f, reflected + of_kind.transmittance)),
+                difference = std::sqrt(std::abs(reflected - of_kind.transmittance));
+    root[i] = {0.5f * (sum + difference), 0.5f * (sum - difference)};
+    for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) {
+      scale[side] = std::sqrt(returning.gain[side][0] / static_cast<float>(exchange.lines[i]));
+      own[side] = returning.own[side][0] / static_cast<float>(exchange.lines[i]);
+      // Light even on all that scatters is not far from the vector sought.
+      from[side] = sum * std::sqrt(static_cast<float>(exchange.lines[i]));
+    }
   }
-  if (periodic && exchange.all_lines > 0)
+  if (periodic && exchange.all_lines > 0) {
     scale[ground] = std::sqrt(albedo.ground / static_cast<float>(exchange.all_lines));
-  // Light even on all that scatters is not far from the vector sought.
-  for (std::size_t side = 0; side <= ground; ++side) from[side] = scale[side] > 0.f ? 1.f / scale[side] : 0.f;
-  for (std::size_t side = 0; side < ground; ++side) from[side] *= albedo.of_kinds[kinds[side / 2]];
-  from[ground] *= albedo.ground;
+    from[ground] = std::sqrt(albedo.ground * static_cast<float>(exchange.all_lines));
+  }
   const std::size_t blocks = (elements + kBlock - 1) / kBlock;
   const auto product = [&](const std::vector<float>& a, const std::vector<float>& b) {
     std::vector<double> parts(blocks);
@@ -588,17 +614,28 @@ double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo, con
   Largest largest{0., 1.};
   for (int step = 0; step < kMostSteps; ++step) {
     requireGoOn(progress, 0.);
-    for (std::size_t side = 0; side <= ground; ++side) sent[side] = scale[side] * from[side];
+    overBlocks(elements, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side)
+        sent[side] = scale[side] * (root[side / 2].same * from[side] + root[side / 2].other * from[side ^ 1]);
+    });
+    sent[ground] = scale[ground] * from[ground];
     std::vector<double> down(blocks);
     overBlocks(elements, [&](std::size_t block, std::size_t begin, std::size_t end) {
-      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
-        float sum = 0.f;
-        for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i) sum += sent[exchange.sees[i]];
-        if (periodic) {
-          sum += static_cast<float>(exchange.below[side]) * sent[ground];
-          down[block] += double{static_cast<float>(exchange.below[side]) * sent[side]};
+      for (std::size_t i = begin; i < end; ++i) {
+        std::array<float, 2> come{};
+        for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) {
+          float sum = 0.f;
+          for (std::uint64_t link = exchange.first[side]; link < exchange.first[side + 1]; ++link)
+            sum += sent[exchange.sees[link]];
+          if (periodic) {
+            sum += static_cast<float>(exchange.below[side]) * sent[ground];
+            down[block] += double{static_cast<float>(exchange.below[side]) * sent[side]};
+          }
+          come[side % 2] = scale[side] * sum;
+          if (scale[side] > 0.f) come[side % 2] += own[side] / scale[side] * sent[side];
         }
-        to[side] = scale[side] * sum + own[side] * from[side];
+        to[2 * i] = root[i].same * come[0] + root[i].other * come[1];
+        to[2 * i + 1] = root[i].same * come[1] + root[i].other * come[0];
       }
     });
     to[ground] = scale[ground] * static_cast<float>(std::accumulate(down.begin(), down.end(), 0.));
@@ -617,8 +654,8 @@ double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo, con
     std::swap(from, to);
   }
   // What is not absorbed is no more than the albedo.
-  const float most =
-      std::max(periodic ? albedo.ground : 0.f, *std::max_element(albedo.of_kinds.begin(), albedo.of_kinds.end()));
+  float most = periodic ? albedo.ground : 0.f;
+  for (const ElementOptics& of_kind : albedo.of_kinds) most = std::max(most, of_kind.albedo());
   return std::min(double{most}, largest.value + norm * largest.last);
 }
 

@@ -17,6 +17,8 @@ namespace sunfleck {
 // What an element does to light: a leaf scatters from either side to both; wood reflects.
 struct ElementOptics {
   float reflectance = 0.f, transmittance = 0.f;  // [1], >= 0, together <= 1
+  float albedo() const { return reflectance + transmittance; }
+  bool operator==(const ElementOptics&) const = default;
 };
 
 // One case to solve: light of one band and from one source, and what it meets.
@@ -58,9 +60,8 @@ struct SolverEffort {
 
 // What light meets in some problems, at most.
 struct FieldAlbedo {
-  std::vector<float> of_kinds;     // of each kind of element [1], 0 .. 1
-  std::vector<float> reflectance;  // its share that is reflected
-  float ground = 0.f;              // with a period [1], 0 .. 1
+  std::vector<ElementOptics> of_kinds;  // of each kind of element
+  float ground = 0.f;                   // with a period [1], 0 .. 1
   bool operator==(const FieldAlbedo&) const = default;
 };
 

@@ -21,10 +21,6 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-bool operator==(const ElementOptics& a, const ElementOptics& b) {
-  return a.reflectance == b.reflectance && a.transmittance == b.transmittance;
-}
-
 }  // namespace
 
 void LargeStandField::makeSuns(std::span<const std::size_t> seen) {

@@ -246,9 +246,9 @@ TEST(F5_Recollision, KnowsAClosedBox) {
   const std::vector<std::uint32_t> kinds(elements.size(), 0);
   for (const float albedo : {0.3f, 0.9f})
     // Lanczos's method ends within a hundredth of the gap to 1; a line along an edge may slip out.
-    EXPECT_NEAR(recollision({elements, exchange, kinds, std::array{0.f}, false},
-                            {.of_kinds = {albedo}, .reflectance = {albedo}}),
-                albedo, 0.01);
+    EXPECT_NEAR(
+        recollision({elements, exchange, kinds, std::array{0.f}, false}, {.of_kinds = {{.reflectance = albedo}}}),
+        albedo, 0.01);
   LeafField field = fieldOf(shared(box));
   EXPECT_NO_THROW(field.solve(sunOn(0.9f, 0.f)));
   EXPECT_THROW(field.solve(sunOn(1.f, 0.f)), InvalidInput);
