@@ -17,8 +17,9 @@ struct Surface {
 
 Surface surfaceOf(const TreeMesh& mesh, const glm::uvec3& triangle) {
   const glm::vec3 &a = mesh.vertices[triangle.x], &b = mesh.vertices[triangle.y], &c = mesh.vertices[triangle.z];
-  const glm::vec3 vector = 0.5f * glm::cross(b - a, c - a);
-  return {(a + b + c) / 3.f, vector, glm::length(vector)};
+  // In double precision: squares of small areas are none in single.
+  const glm::dvec3 vector = 0.5 * glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+  return {(a + b + c) / 3.f, glm::vec3(vector), static_cast<float>(glm::length(vector))};
 }
 
 std::vector<Surface> surfacesOf(const TreeMesh& mesh, const std::vector<glm::uvec3>& triangles) {

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "core/available_memory.hpp"
+#include "core/bounds.hpp"
 #include "core/require.hpp"
 #include "field/detail/line_grid.hpp"
 
@@ -24,6 +25,7 @@ using detail::Crossing64;
 using detail::LineGrid;
 using detail::sideMet;
 
+constexpr double kMostLines = 16'777'216.;        // along an axis
 constexpr std::size_t kChunks = 16;               // of axes, whose links are counted and written one after the other
 constexpr std::uint32_t kFirstOnLine = 1u << 31;  // marks a side, of which there are fewer
 
@@ -180,9 +182,14 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
       elements.area.begin(), elements.area.begin() + static_cast<std::ptrdiff_t>(elements.leaf_elements), 0.);
   const double area = std::min(leaves / static_cast<double>(mesh.leaf_count),
                                2. * leaves / static_cast<double>(elements.leaf_elements));
-  const double line_area = 0.5 * area / double{effort.crossings};
-  const double crossings = 0.5 * total / line_area * static_cast<double>(axes);
-  const double bytes = crossings * 56. + static_cast<double>(elements.size()) * (8. * kChunks + 40.);
+  // Of small leaves far apart lines would be too many: most of them meet nothing.
+  const glm::dvec3 box(bounds(mesh).size());
+  const double across = period ? double{period->x} * double{period->y} : box.x * box.y + box.y * box.z + box.z * box.x;
+  const double line_area = std::max(0.5 * area / double{effort.crossings}, across / kMostLines);
+  // With a period as small as that there is one line for it.
+  const double crossings = 0.5 * total / (period ? std::min(line_area, across) : line_area) * static_cast<double>(axes);
+  const double bytes = crossings * 56. + static_cast<double>(elements.size()) * (8. * kChunks + 40.) +
+                       8. * across / std::min(line_area, across) * static_cast<double>(kChunks);
   if (const double available = availableMemory(); bytes > available)
     throw InvalidInput("the light field: must be of fewer leaves or lines: it would take " +
                        std::to_string(static_cast<long long>(bytes * 1e-6)) + " MB, and there are " +

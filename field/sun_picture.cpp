@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
 
 #include "core/bounds.hpp"
+#include "core/require.hpp"
 
 namespace sunfleck {
 namespace {
@@ -20,6 +22,12 @@ using detail::Crossing64;
 
 constexpr std::size_t kTask = 4096;  // triangles or pixels that are worth a task
 constexpr Crossing64 kNothing = std::numeric_limits<Crossing64>::max();
+
+Direction requireGiven(Direction along, bool periodic) {
+  require(std::abs(glm::length(along) - 1.f) < 1e-3f, "length of the sunlight's direction", glm::length(along), "1");
+  if (periodic) require(along.z < 0.f, "z of the sunlight's direction", along.z, "below 0");
+  return along;
+}
 
 double pixelAreaFor(const TreeMesh& mesh, const FieldElements& elements, Direction along,
                     const std::optional<glm::vec2>& period, const DirectEffort& effort) {
@@ -40,7 +48,7 @@ double pixelAreaFor(const TreeMesh& mesh, const FieldElements& elements, Directi
 SunPicture::SunPicture(const TreeMesh& mesh, const FieldElements& elements, const std::optional<glm::vec2>& period,
                        Direction along, const DirectEffort& effort)
     : elements_(&elements),
-      along_(along),
+      along_(requireGiven(along, period.has_value())),
       grid_({&mesh, &elements, period}, along, pixelAreaFor(mesh, elements, along, period, effort), {0.5, 0.5}),
       nearest_(grid_.lines()) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels(), kTask), [&](const auto& range) {
