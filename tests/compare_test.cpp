@@ -135,7 +135,8 @@ TEST(R7_LeafIrradiance, OfFlatLeavesUnderTheSun) {
   stand.update(scene);
   const Validation v = validate(scene, stand, {.trace = {.paths = 10'000, .seed = 2}});
   for (const ModelResult& m : v.models) {
-    EXPECT_FLOAT_EQ(m.irradiance[0], 1.f) << nameOf(m.model);
+    // The field counts pixels, of which 22.6 lie along a side.
+    EXPECT_NEAR(m.irradiance[0], 1.f, m.model == Model::field ? 0.03f : 1e-6f) << nameOf(m.model);
     EXPECT_FLOAT_EQ(m.irradiance[1], m.model == Model::field ? 0.f : std::exp(-1.f)) << nameOf(m.model);
   }
   // All light that enters the box meets the first leaf, whose sides are the box's: no spread, only rounding.

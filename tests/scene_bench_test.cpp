@@ -78,7 +78,7 @@ TEST(F25_BenchScene, TellsTheErrorsOfModelsAndTheNoiseOfMonteCarlo) {
   for (std::size_t i = 0; i < kFields; ++i) {
     const SceneBenchRow& row = bench.rows[kSlabs + i];
     EXPECT_EQ(row.method, i < 4 ? "field" : "grid");
-    if (row.method == "field" && row.setting == 64.) {
+    if (row.method == "field" && row.setting == 40.) {
       EXPECT_NEAR(row.weighted, v.models.back().errors.rms_weighted.value(), 1e-12);
     }
   }

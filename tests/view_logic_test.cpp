@@ -299,8 +299,8 @@ TEST(ViewScript, TellsWhatIsWrongWhere) {
   EXPECT_EQ(refusal("resize 1.5 1"), "x.txt:1: resize WIDTH = \"1.5\": must be a whole number, 1 to 16384");
   EXPECT_EQ(refusal("panels maybe"), "x.txt:1: panels SHOWN = \"maybe\": must be one of on, off");
   EXPECT_EQ(refusal("frobnicate"), "x.txt:1: \"frobnicate\": must be a command; see: sunfleck view --help");
-  EXPECT_EQ(refusal("wait long"), "x.txt:1: wait \"long\": must be one of ready, reference");
-  EXPECT_EQ(refusal("wait"), "x.txt:1: wait without a word: must be one of ready, reference");
+  EXPECT_EQ(refusal("wait long"), "x.txt:1: wait \"long\": must be one of ready, preview, reference");
+  EXPECT_EQ(refusal("wait"), "x.txt:1: wait without a word: must be one of ready, preview, reference");
   EXPECT_EQ(refusal("save \"half"), "x.txt:1: \"\"half\": must end with a quote");
   EXPECT_EQ(refusal("save \"\""), "x.txt:1: save FILE = \"\": must be 1 to 4096 characters");
 }

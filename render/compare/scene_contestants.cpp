@@ -167,7 +167,7 @@ std::vector<NamedSceneContestant> sceneContestants(const Scene& scene, const std
                      .contestant = std::make_unique<ModelContestant>(scene, model, geometry, band)});
       continue;
     }
-    for (const int axes : {16, 32, 64, 128})
+    for (const int axes : {10, 20, 40, 80})
       all.push_back({.method = nameOf(model),
                      .setting = static_cast<double>(axes),
                      .work = 1e4 * axes,
