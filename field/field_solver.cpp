@@ -9,28 +9,21 @@
 #include <numeric>
 
 #include "core/require.hpp"
+#include "field/detail/returning.hpp"
 
 namespace sunfleck {
 namespace {
 
-constexpr std::size_t kLanes = 4;  // problems solved side by side
-typedef float Lanes __attribute__((vector_size(4 * kLanes)));
+using detail::kBlock;
+using detail::KindOptics;
+using detail::kLanes;
+using detail::Lanes;
+using detail::overBlocks;
+using detail::Returning;
 using Sums = std::array<double, kLanes>;
 
-constexpr std::size_t kBlock = 512;  // elements that are worth a task, and whose sums are rounded together
 constexpr std::size_t kHistory = 6;  // of Anderson's acceleration
 constexpr double kPi = std::numbers::pi;
-// What lines return anyway is taken back up to this share: of elements that few lines cross nearly all light goes on by
-// the line that it came by, and a matrix without that would hold light longer than there is any.
-constexpr float kMostReturn = 1.f / 16.f;
-
-// Calls work(block, begin, end) for blocks of `count` elements, in parallel.
-template <typename Work>
-void overBlocks(std::size_t count, const Work& work) {
-  const std::size_t blocks = (count + kBlock - 1) / kBlock;
-  tbb::parallel_for(std::size_t{0}, blocks,
-                    [&](std::size_t block) { work(block, block * kBlock, std::min(count, (block + 1) * kBlock)); });
-}
 
 Lanes all(float value) {
   return value - Lanes{};
@@ -39,43 +32,6 @@ Lanes all(float value) {
 void addTo(Sums& sums, const Lanes& values) {
   for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += double{values[lane]};
 }
-
-// What one kind of element does to light, in each problem [1].
-struct KindOptics {
-  Lanes reflectance{}, transmittance{};
-};
-
-// How light goes back where it came from at each side. Of the light that comes to an element along a line, `back` of
-// what it reflects returns along that line, more than of what comes along others. Solving that for the two ends of a
-// line gives (F7): each sends A + e B, where B is what the other sends by itself and e = back reflectance.
-struct Returning {
-  std::vector<float> back;       // of each element: near return, less what its lines return anyway
-  std::vector<Lanes> own, gain;  // of each side: how much comes back of what it sends, and of all the rest
-
-  Returning(const FieldGeometry& geometry, std::span<const KindOptics> optics)
-      : back(geometry.elements.size()), own(2 * back.size()), gain(2 * back.size()) {
-    const LineExchange& exchange = geometry.exchange;
-    overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        back[i] = geometry.near_return[geometry.kinds[i]] -
-                  std::min(kMostReturn, 1.f / static_cast<float>(std::max(exchange.lines[i], 1u)));
-    });
-    overBlocks(back.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
-        Lanes sum{};
-        for (std::uint64_t link = exchange.first[side]; link < exchange.first[side + 1]; ++link) {
-          const std::size_t other = exchange.sees[link] / 2;
-          sum += back[other] * optics[geometry.kinds[other]].reflectance;
-        }
-        const auto met =
-            static_cast<float>(std::max<std::uint64_t>(exchange.first[side + 1] - exchange.first[side], 1));
-        const Lanes here = back[side / 2] * optics[geometry.kinds[side / 2]].reflectance;
-        gain[side] = 1.f / (1.f - here * sum / met);
-        own[side] = gain[side] * sum;
-      }
-    });
-  }
-};
 
 // The state of up to kLanes problems: the light of each side that did not come straight from a sun. The last entry of
 // each vector is the ground's.
@@ -512,38 +468,6 @@ class Solve {
   double first_bound_ = 0.;
 };
 
-// Largest eigenvalue of a symmetric tridiagonal matrix, by Sturm's sequence (Golub & Van Loan), and how much of its
-// vector lies on the last row.
-struct Largest {
-  double value, last;
-};
-Largest largestEigenvalue(std::span<const double> diagonal, std::span<const double> beside) {
-  double low = -1., high = 1.;
-  for (std::size_t i = 0; i < diagonal.size(); ++i) {
-    const double around = (i > 0 ? beside[i - 1] : 0.) + (i + 1 < diagonal.size() ? beside[i] : 0.);
-    high = std::max(high, diagonal[i] + around);
-    low = std::min(low, diagonal[i] - around);
-  }
-  for (int step = 0; step < 60; ++step) {
-    const double middle = 0.5 * (low + high);
-    double pivot = diagonal[0] - middle;
-    bool above = pivot > 0.;  // whether an eigenvalue lies above
-    for (std::size_t i = 1; i < diagonal.size(); ++i) {
-      pivot = diagonal[i] - middle - beside[i - 1] * beside[i - 1] / (std::abs(pivot) > 1e-30 ? pivot : -1e-30);
-      above = above || pivot > 0.;
-    }
-    (above ? low : high) = middle;
-  }
-  std::vector<double> vector{1.};
-  double squares = 1.;
-  for (std::size_t i = 0; i + 1 < diagonal.size(); ++i) {
-    const double before = i > 0 ? beside[i - 1] * vector[i - 1] : 0.;
-    vector.push_back(((high - diagonal[i]) * vector[i] - before) / std::max(beside[i], 1e-30));
-    squares += vector.back() * vector.back();
-  }
-  return {high, std::abs(vector.back()) / std::sqrt(squares)};
-}
-
 }  // namespace
 
 FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems) {
@@ -559,104 +483,6 @@ FieldAlbedo largestAlbedo(std::span<const FieldProblem> problems) {
     albedo.ground = std::max(albedo.ground, problem.ground_albedo);
   }
   return albedo;
-}
-
-// (F5)
-double recollision(const FieldGeometry& geometry, const FieldAlbedo& albedo, const Progress& progress) {
-  constexpr int kMostSteps = 12;
-  const LineExchange& exchange = geometry.exchange;
-  const std::span<const std::uint32_t> kinds = geometry.kinds;
-  const bool periodic = geometry.periodic;
-  const std::size_t elements = kinds.size(), ground = 2 * elements;
-  std::vector<KindOptics> optics(albedo.of_kinds.size());
-  for (std::size_t kind = 0; kind < optics.size(); ++kind)
-    optics[kind].reflectance[0] = albedo.of_kinds[kind].reflectance;
-  const Returning returning(geometry, optics);
-  // Lanczos's method on the symmetric matrix C (K + own) C. C^2 is what the sides of an element send by themselves of
-  // what comes to them, in absolute values of its eigenvalues: (rho - e) + tau of the sum of both sides and
-  // (rho - e) - tau of their difference. K is made symmetric by the square roots of the lines' numbers.
-  struct Root {
-    float same = 0.f, other = 0.f;
-  };
-  std::vector<Root> root(elements);
-  std::vector<float> scale(ground + 1), own(ground + 1), from(ground + 1), to(ground + 1), before(ground + 1),
-      sent(ground + 1);
-  for (std::size_t i = 0; i < elements; ++i) {
-    if (exchange.lines[i] == 0) continue;
-    const ElementOptics& of_kind = albedo.of_kinds[kinds[i]];
-    const float reflected = (1.f - returning.back[i]) * of_kind.reflectance;
-    const float sum = std::sqrt(std::max(0.f, reflected + of_kind.transmittance)),
-                difference = std::sqrt(std::abs(reflected - of_kind.transmittance));
-    root[i] = {0.5f * (sum + difference), 0.5f * (sum - difference)};
-    for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) {
-      scale[side] = std::sqrt(returning.gain[side][0] / static_cast<float>(exchange.lines[i]));
-      own[side] = returning.own[side][0] / static_cast<float>(exchange.lines[i]);
-      // Light even on all that scatters is not far from the vector sought.
-      from[side] = sum * std::sqrt(static_cast<float>(exchange.lines[i]));
-    }
-  }
-  if (periodic && exchange.all_lines > 0) {
-    scale[ground] = std::sqrt(albedo.ground / static_cast<float>(exchange.all_lines));
-    from[ground] = std::sqrt(albedo.ground * static_cast<float>(exchange.all_lines));
-  }
-  const std::size_t blocks = (elements + kBlock - 1) / kBlock;
-  const auto product = [&](const std::vector<float>& a, const std::vector<float>& b) {
-    std::vector<double> parts(blocks);
-    overBlocks(elements, [&](std::size_t block, std::size_t begin, std::size_t end) {
-      for (std::size_t side = 2 * begin; side < 2 * end; ++side) parts[block] += double{a[side]} * double{b[side]};
-    });
-    return std::accumulate(parts.begin(), parts.end(), double{a[ground]} * double{b[ground]});
-  };
-  double norm = std::sqrt(product(from, from));
-  if (!(norm > 0.)) return 0.;
-  for (float& value : from) value = static_cast<float>(double{value} / norm);
-  std::vector<double> diagonal, beside;
-  Largest largest{0., 1.};
-  for (int step = 0; step < kMostSteps; ++step) {
-    requireGoOn(progress, 0.);
-    overBlocks(elements, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t side = 2 * begin; side < 2 * end; ++side)
-        sent[side] = scale[side] * (root[side / 2].same * from[side] + root[side / 2].other * from[side ^ 1]);
-    });
-    sent[ground] = scale[ground] * from[ground];
-    std::vector<double> down(blocks);
-    overBlocks(elements, [&](std::size_t block, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        std::array<float, 2> come{};
-        for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) {
-          float sum = 0.f;
-          for (std::uint64_t link = exchange.first[side]; link < exchange.first[side + 1]; ++link)
-            sum += sent[exchange.sees[link]];
-          if (periodic) {
-            sum += static_cast<float>(exchange.below[side]) * sent[ground];
-            down[block] += double{static_cast<float>(exchange.below[side]) * sent[side]};
-          }
-          come[side % 2] = scale[side] * sum;
-          if (scale[side] > 0.f) come[side % 2] += own[side] / scale[side] * sent[side];
-        }
-        to[2 * i] = root[i].same * come[0] + root[i].other * come[1];
-        to[2 * i + 1] = root[i].same * come[1] + root[i].other * come[0];
-      }
-    });
-    to[ground] = scale[ground] * static_cast<float>(std::accumulate(down.begin(), down.end(), 0.));
-    diagonal.push_back(product(from, to));
-    for (std::size_t side = 0; side <= ground; ++side)
-      to[side] -= static_cast<float>(diagonal.back()) * from[side] +
-                  (beside.empty() ? 0.f : static_cast<float>(beside.back()) * before[side]);
-    norm = std::sqrt(product(to, to));
-    beside.push_back(norm);
-    largest = largestEigenvalue(diagonal, beside);
-    // The eigenvalue is as near as this residual's square over the distance to the next one, which is no smaller here
-    // than a hundredth.
-    if (norm * largest.last < 3e-3 * (1. - largest.value) || norm < 1e-7) break;
-    for (float& value : to) value = static_cast<float>(double{value} / norm);
-    std::swap(before, from);
-    std::swap(from, to);
-  }
-  // What is not absorbed is no more than the albedo.
-  float most = periodic ? albedo.ground : 0.f;
-  for (const ElementOptics& of_kind : albedo.of_kinds) most = std::max(most, of_kind.albedo());
-  return std::min(double{most}, largest.value + norm * largest.last);
 }
 
 // (F4)
