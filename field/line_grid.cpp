@@ -1,7 +1,6 @@
 #include "field/detail/line_grid.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -31,18 +30,6 @@ glm::ivec2 wholePixels(const glm::dvec2& period, double wanted) {
 }
 
 }  // namespace
-
-Crossing64 crossing64(float depth, std::uint32_t side) {
-  constexpr std::uint32_t kSign = 1u << 31;
-  const auto bits = std::bit_cast<std::uint32_t>(depth);
-  return Crossing64{bits & kSign ? ~bits : bits | kSign} << 32 | side;
-}
-
-float depthOf(Crossing64 crossing) {
-  constexpr std::uint32_t kSign = 1u << 31;
-  const auto bits = static_cast<std::uint32_t>(crossing >> 32);
-  return std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits);
-}
 
 // (F2)
 LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset)
@@ -90,6 +77,7 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
     pixels_.corner = glm::floor(glm::dvec2(box.low) - offset) + offset;
     size_ = glm::ivec2(glm::ceil(glm::dvec2(box.high) - pixels_.corner)) + 1;
   }
+  per_size_ = 1.f / glm::vec2(size_);
   shift_ = pixels_.corner;
   corner_ = (shift_.x + 0.5f) * column_step_ + (shift_.y + 0.5f) * row_step_;
   pixels_.pixels_per_metre = 1.;

@@ -104,10 +104,10 @@ std::vector<float> nearReturn(const FieldElements& elements, const LineExchange&
   };
   std::array<std::vector<Found>, kChunks> found;
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
-    const auto add = [&](std::size_t side, const glm::u16vec3& code, std::uint32_t leaf) {
+    const auto add = [&](std::size_t side, std::uint32_t crossing, std::uint32_t leaf) {
       const std::size_t element = side / 2;
       if (element >= view_of.size() || view_of[element] == kNone) return;
-      const glm::vec3 place = exchange.places.place(code);
+      const glm::vec3 place = exchange.places.place(exchange.crossed_at[crossing]);
       // Other bits than the side's.
       if (scattered(place + 1.f) * exchange.lines[element] > lines_wanted) return;
       found[chunk].push_back({static_cast<std::uint32_t>(2 * view_of[element] + side % 2), {place, leaf}});

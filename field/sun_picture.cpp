@@ -5,11 +5,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numeric>
 
 #include "core/bounds.hpp"
@@ -21,7 +19,6 @@ namespace {
 using detail::Crossing64;
 
 constexpr std::size_t kTask = 4096;  // triangles or pixels that are worth a task
-constexpr Crossing64 kNothing = std::numeric_limits<Crossing64>::max();
 
 Direction requireGiven(Direction along, bool periodic) {
   require(std::abs(glm::length(along) - 1.f) < 1e-3f, "length of the sunlight's direction", glm::length(along), "1");
@@ -69,37 +66,6 @@ SunPicture::SunPicture(const TreeMesh& mesh, const FieldElements& elements, cons
 std::uint32_t SunPicture::side(std::size_t pixel) const {
   const Crossing64 crossing = nearest_[pixel].load(std::memory_order_relaxed);
   return crossing == kNothing ? kNoSide : detail::sideMet(crossing);
-}
-
-void SunPicture::litSides(std::span<const std::uint32_t> elements, std::span<const glm::vec3> places,
-                          std::span<std::uint32_t> sides) const {
-  // Pixels lie anywhere in memory: all of a batch are called for before the first is looked at.
-  constexpr std::size_t kBatch = 64;
-  std::array<std::size_t, kBatch> pixel;
-  std::array<float, kBatch> depth;
-  for (std::size_t first = 0; first < places.size(); first += kBatch) {
-    const std::size_t count = std::min(kBatch, places.size() - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      pixel[i] = grid_.lineAt(places[first + i], depth[i]);
-      if (pixel[i] < pixels()) __builtin_prefetch(&nearest_[pixel[i]]);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const Crossing64 crossing = pixel[i] < pixels() ? nearest_[pixel[i]].load(std::memory_order_relaxed) : kNothing;
-      sides[first + i] = litSide(elements[first + i], depth[i], crossing);
-    }
-  }
-}
-
-std::uint32_t SunPicture::litSide(std::uint32_t element, float depth, Crossing64 nearest) const {
-  if (nearest != kNothing) {
-    const std::uint32_t met = detail::sideMet(nearest);
-    if (met / 2 == element) return met;
-    const std::uint32_t leaf = elements_->leaf[element];
-    const bool same_leaf = leaf != FieldElements::kWood && leaf == elements_->leaf[met / 2];
-    if (!same_leaf && depth > detail::depthOf(nearest)) return kNoSide;
-  }
-  // The pixel's middle misses the element, or lies on one behind it.
-  return 2 * element + (glm::dot(elements_->normal[element], along_) > 0.f);
 }
 
 }  // namespace sunfleck

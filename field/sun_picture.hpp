@@ -2,10 +2,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/directions.hpp"
@@ -36,12 +36,24 @@ class SunPicture {
   double pixelArea() const { return grid_.lineArea(); }  // across the light [m^2]
   // 2 element for the front of one, 2 element + 1 for its back, or kNoSide where light passes.
   std::uint32_t side(std::size_t pixel) const;
-  // The sides of elements that the sun lights at places on them; kNoSide where another element is before one.
-  void litSides(std::span<const std::uint32_t> elements, std::span<const glm::vec3> places,
-                std::span<std::uint32_t> sides) const;
+  // The side of an element that the sun lights at a place on it; kNoSide where another element is before it.
+  std::uint32_t litSide(std::uint32_t element, const glm::vec3& place) const {
+    float depth;
+    const std::size_t pixel = grid_.lineAt(place, depth);
+    const detail::Crossing64 nearest = pixel < pixels() ? nearest_[pixel].load(std::memory_order_relaxed) : kNothing;
+    if (nearest != kNothing) {
+      const std::uint32_t met = detail::sideMet(nearest);
+      if (met / 2 == element) return met;
+      const std::uint32_t leaf = elements_->leaf[element];
+      const bool same_leaf = leaf != FieldElements::kWood && leaf == elements_->leaf[met / 2];
+      if (!same_leaf && depth > detail::depthOf(nearest)) return kNoSide;
+    }
+    // The pixel's middle misses the element, or lies on one behind it.
+    return 2 * element + (glm::dot(elements_->normal[element], along_) > 0.f);
+  }
 
  private:
-  std::uint32_t litSide(std::uint32_t element, float depth, detail::Crossing64 nearest) const;
+  static constexpr detail::Crossing64 kNothing = ~detail::Crossing64{0};
 
   const FieldElements* elements_;
   Direction along_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -24,8 +25,16 @@ using Crossing64 = std::uint64_t;
 inline std::uint32_t sideMet(Crossing64 crossing) {
   return static_cast<std::uint32_t>(crossing);
 }
-Crossing64 crossing64(float depth, std::uint32_t side);
-float depthOf(Crossing64 crossing);
+inline Crossing64 crossing64(float depth, std::uint32_t side) {
+  constexpr std::uint32_t kSign = 1u << 31;
+  const auto bits = std::bit_cast<std::uint32_t>(depth);
+  return Crossing64{bits & kSign ? ~bits : bits | kSign} << 32 | side;
+}
+inline float depthOf(Crossing64 crossing) {
+  constexpr std::uint32_t kSign = 1u << 31;
+  const auto bits = static_cast<std::uint32_t>(crossing >> 32);
+  return std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits);
+}
 
 // Sides of a stand's elements.
 struct StandSurfaces {
@@ -55,7 +64,7 @@ class LineGrid {
     glm::vec2 pixel(glm::dot(place, right_) - shift_.x, glm::dot(place, up_) - shift_.y);
     depth = glm::dot(place, depth_);
     if (surfaces_.period) {
-      const glm::vec2 periods = pixel / glm::vec2(size_);
+      const glm::vec2 periods = pixel * per_size_;
       // Rounds down, without the call that std::floor is on old processors.
       const glm::vec2 whole(static_cast<float>(static_cast<int>(periods.x) - (periods.x < 0.f)),
                             static_cast<float>(static_cast<int>(periods.y) - (periods.y < 0.f)));
@@ -96,12 +105,16 @@ class LineGrid {
       for (const Span& span : std::span(work).first(scanned.spans)) {
         const std::size_t triangle = begin + span.triangle;
         const std::uint32_t side = 2 * elements[triangle] + !fromFront(triangles[triangle]);
-        const auto row = static_cast<std::size_t>(span.row) % static_cast<std::size_t>(size_.y);
-        auto column = span.column % static_cast<std::uint32_t>(size_.x);
+        const auto columns = static_cast<std::uint32_t>(size_.x);
+        std::size_t row = span.row;
+        std::uint32_t column = span.column;
+        if (surfaces_.period) {  // of which the stand's pixels may go round several; divisions take long
+          row %= static_cast<std::size_t>(size_.y);
+          column %= columns;
+        }
         for (std::uint32_t i = 0; i < span.length; ++i) {
-          put(row * static_cast<std::size_t>(size_.x) + column,
-              crossing64(span.depth + static_cast<float>(i) * span.slope, side));
-          if (++column == static_cast<std::uint32_t>(size_.x)) column = 0;
+          put(row * columns + column, crossing64(span.depth + static_cast<float>(i) * span.slope, side));
+          if (++column == columns) column = 0;
         }
       }
       begin += scanned.triangles;
@@ -113,6 +126,7 @@ class LineGrid {
   bool mirrored_ = false;             // whether right, up and depth are left-handed
   PixelGrid pixels_{};                // of the stand; with a period they may go round it several times
   glm::ivec2 size_{0};
+  glm::vec2 per_size_{0.f};  // 1 / size_
   double line_area_ = 0.;
   glm::vec3 right_{}, up_{}, depth_{};               // which give a place's pixel, but for shift_, and depth
   glm::vec2 shift_{};                                // [pixel]
