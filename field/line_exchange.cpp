@@ -191,15 +191,15 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   const double line_area = std::max(0.5 * area / double{effort.crossings}, across / kMostLines);
   // With a period as small as that there is one line for it.
   const double crossings = 0.5 * total / (period ? std::min(line_area, across) : line_area) * static_cast<double>(axes);
-  if (crossings > kMostCrossings)
-    throw InvalidInput("the light field: must be of fewer leaves or lines: lines would meet elements " +
-                       std::to_string(static_cast<long long>(crossings)) + " times, and 4000000000 are the most");
   const double bytes = crossings * 56. + static_cast<double>(elements.size()) * (20. * kChunks + 60.) +
                        8. * across / std::min(line_area, across) * static_cast<double>(kChunks);
   if (const double available = availableMemory(); bytes > available)
     throw InvalidInput("the light field: must be of fewer leaves or lines: it would take " +
                        std::to_string(static_cast<long long>(bytes * 1e-6)) + " MB, and there are " +
                        std::to_string(static_cast<long long>(available * 1e-6)) + " MB");
+  if (crossings > kMostCrossings)
+    throw InvalidInput("the light field: must be of fewer leaves or lines: these would meet " +
+                       std::to_string(static_cast<long long>(crossings)) + " times, and 4000000000 times are the most");
 
   const std::vector<Direction> along = axesOf(effort.axes);
   const detail::StandSurfaces surfaces{&mesh, &elements, period};

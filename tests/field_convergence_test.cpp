@@ -66,7 +66,10 @@ struct Judge {
                                             .direct = directLight(*mesh, elements, {}, kSun, kFineDirect).irradiance,
                                             .entering = field.evenSky({&dark, 1}, {&dark, 1}, {})});
     EXPECT_TRUE(found.told.empty()) << found.told;
-    return error([&](std::size_t i) { return found.irradiance[2 * i] + found.irradiance[2 * i + 1]; });
+    std::vector<float> sums(elements.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = found.irradiance[2 * i] + found.irradiance[2 * i + 1];
+    const std::vector<float> of_leaves = leafMeans(elements, mesh->leaf_count, sums);
+    return error([&](std::size_t leaf) { return of_leaves[leaf]; });
   }
 };
 
