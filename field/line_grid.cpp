@@ -32,7 +32,7 @@ glm::ivec2 wholePixels(const glm::dvec2& period, double wanted) {
 }  // namespace
 
 // (F2)
-LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset)
+LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset, int finer)
     : surfaces_(surfaces) {
   const std::vector<glm::vec3>& vertices = surfaces.mesh->vertices;
   projected_.resize(vertices.size());
@@ -41,6 +41,7 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
     const glm::dvec2 period(*surfaces.period);
     const double rise = std::abs(double{along.z});
     size_ = wholePixels(period, period.x * period.y * rise / area);
+    size_.x *= finer;
     line_area_ = period.x * period.y * rise / (static_cast<double>(size_.x) * size_.y);
     const glm::vec2 scale = glm::vec2(glm::dvec2(size_) / period);
     right = scale.x * glm::vec3(1.f, 0.f, -along.x / along.z);
@@ -53,11 +54,11 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
   } else {
     const Axes axes = axesAlong(along);
     const auto scale = static_cast<float>(1. / std::sqrt(area));
-    right = scale * axes.right;
+    right = static_cast<float>(finer) * scale * axes.right;
     up = scale * axes.up;
     depth = axes.along;
-    line_area_ = area;
-    column_step_ = axes.right / scale;
+    line_area_ = area / finer;
+    column_step_ = axes.right / (static_cast<float>(finer) * scale);
     row_step_ = axes.up / scale;
     along_ = along;
   }

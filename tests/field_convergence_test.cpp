@@ -19,7 +19,7 @@ namespace {
 
 constexpr LeafOptics kLeaf{.reflectance = 0.6f, .transmittance = 0.35f};
 const Direction kSun = sunlight(0.5f, 0.3f);
-constexpr DirectEffort kFineDirect{.pixels = 2000.f};  // some 1 % off per leaf: less than what is judged
+constexpr DirectEffort kFineDirect{.pixels = 2000.f};  // less than 1 % off per leaf: less than what is judged
 
 // A tree and what Monte Carlo finds of it.
 struct Judge {
