@@ -120,10 +120,26 @@ class Solve {
     for (std::size_t first = 0; first < problems_.size();) {
       std::size_t last = first + 1;
       while (last < problems_.size() && problems_[last].direct == problems_[first].direct) ++last;
-      if (problems_[first].direct) addFirstScattering(first, last);
+      if (problems_[first].direct && problems_[first].scattered_once.empty()) addFirstScattering(first, last);
       first = last;
     }
-    for (std::size_t lane = 0; lane < problems_.size(); ++lane) addOutside(lane);
+    for (std::size_t lane = 0; lane < problems_.size(); ++lane) {
+      if (problems_[lane].direct && !problems_[lane].scattered_once.empty()) addScatteredOnce(lane);
+      addOutside(lane);
+    }
+  }
+
+  // (F6) Light of a lane's sun, scattered once, as the problem tells it.
+  void addScatteredOnce(std::size_t lane) {
+    const FieldProblem& problem = problems_[lane];
+    for (std::size_t side = 0; side < ground(); ++side) {
+      const ElementOptics& optics = problem.optics[kinds_[side / 2]];
+      const float mean = optics.reflectance * problem.direct->irradiance[side] +
+                         optics.transmittance * problem.direct->irradiance[side ^ 1];
+      source_[side][lane] +=
+          scale_[lane] * perLine(side) *
+          (returning_.gain[side][lane] * problem.scattered_once[side] + returning_.own[side][lane] * mean);
+    }
   }
 
   // (F6) Light of the sun that is common to lanes [first, last), scattered once.

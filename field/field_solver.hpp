@@ -25,6 +25,10 @@ struct ElementOptics {
 struct FieldProblem {
   const DirectLight* direct = nullptr;  // of a sun; none: dark
   const LitPlaces* lit = nullptr;       // and where it falls; none: evenly on each side
+  // What the lines of each side bring of that sun's light, scattered once where it falls: pi times the sum of their
+  // radiances [1]; empty: that follows from the above. Of what leaves along lines to the outside nothing is told, which
+  // the balance then lacks.
+  std::span<const float> scattered_once{};
   // Irradiance of each side by light that comes along the exchange's lines from beyond it [1]; empty: none.
   std::span<const float> arriving{};
   std::span<const float> outside{};       // radiance of the sky in which light travels in each of the exchange's

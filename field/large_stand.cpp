@@ -14,6 +14,7 @@
 #include "core/require.hpp"
 #include "field/detail/large_stand_state.hpp"
 #include "field/escape_clumping.hpp"
+#include "field/near_return.hpp"
 
 namespace sunfleck {
 namespace {
@@ -67,6 +68,7 @@ void LargeStandField::makeKinds() {
       for (std::size_t side = 2 * e; side < 2 * e + (wood ? 1 : 2); ++side)
         outside += static_cast<double>(kind.exchange.first_outside[side + 1] - kind.exchange.first_outside[side]);
     }
+    kind.near_return = nearReturn(kind.elements, kind.exchange, kind.materials, 2);
     kind.escape = outside / std::max(from_leaves, 1.);
     kind.box = bounds(*meshes_[i]);
   }

@@ -81,6 +81,8 @@ class LargeStandField {
 
   void makeKinds();
   void makeCells();
+  double lineArea() const;
+  const TreePicture& pictureOf(Turn& turn, std::size_t sun) const;
   void makeSuns(std::span<const std::size_t> seen);
   void solveCells();
   void solveTrees(std::span<const std::size_t> seen);
@@ -89,6 +91,8 @@ class LargeStandField {
   CellsAlong cellsAlong(const Direction& s, std::span<const float> sent) const;
   LitTree litTree(std::size_t number) const;
   std::vector<std::vector<float>> lightAtWalls(std::span<const std::size_t> now, const Sent& sent);
+  std::vector<float> directLight(std::size_t tree, std::size_t sun) const;
+  std::vector<std::vector<float>> scatteredOnce(std::span<const std::size_t> now) const;
   void solveAlongLines(std::span<const std::size_t> now, std::span<const std::vector<float>> around);
   void tellFar(std::span<const std::size_t> far);
   void requireMemory(const FieldLighting& lighting, std::span<const std::size_t> seen,

@@ -23,12 +23,8 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 }  // namespace
 
-void LargeStandField::makeSuns(std::span<const std::size_t> seen) {
-  const Stopwatch watch(costs_[detail::kSun].seconds);
-  const SweepGrid& grid = cells_->medium().grid;
-  const std::size_t suns = lighting_->suns.size();
-  lit_ = std::make_unique<Lit>();
-  // As fine as elements ask for, and as coarse as pictures together must be.
+// As fine as elements ask for, and as coarse as pictures together must be [m^2].
+double LargeStandField::lineArea() const {
   double leaf_area = 0., leaves = 0., all = 0.;
   for (const Placement& tree : stand_.trees) {
     const FieldElements& elements = kinds_[tree.kind]->elements;
@@ -38,16 +34,32 @@ void LargeStandField::makeSuns(std::span<const std::size_t> seen) {
     leaves += static_cast<double>(elements.leaf_elements);
     all += size.x * size.y + size.y * size.z + size.x * size.z;
   }
-  const double line_area = std::max(leaf_area / leaves / double{effort_.pixels}, all / effort_.most_lines);
+  return std::max(leaf_area / leaves / double{effort_.pixels}, all / effort_.most_lines);
+}
+
+// Of the suns whose lines are known.
+const TreePicture& LargeStandField::pictureOf(Turn& turn, std::size_t sun) const {
+  if (turn.of_sun != sun) {
+    turn.picture = treePicture(*meshes_[turn.kind], kinds_[turn.kind]->elements, turn.rotation, lit_->lines[sun]);
+    turn.of_sun = sun;
+  }
+  return turn.picture;
+}
+
+void LargeStandField::makeSuns(std::span<const std::size_t> seen) {
+  const Stopwatch watch(costs_[detail::kSun].seconds);
+  const SweepGrid& grid = cells_->medium().grid;
+  const std::size_t suns = lighting_->suns.size();
+  lit_ = std::make_unique<Lit>();
+  lit_->lines.reserve(suns);
+  for (const auto& turn : turns_) turn->of_sun = Turn::kNoSun;
+  const double line_area = lineArea();
   lit_->of_seen.resize(suns);
+  lit_->pixels.resize(suns);
   for (std::size_t sun = 0; sun < suns; ++sun) {
     ++costs_[detail::kSun].made;
-    const SunLines lines = sunLines(lighting_->suns[sun].along, line_area, stand_.period);
-    lit_->lines.push_back(lines);
-    tbb::parallel_for(std::size_t{0}, turns_.size(), [&](std::size_t i) {
-      Turn& turn = *turns_[i];
-      turn.picture = treePicture(*meshes_[turn.kind], kinds_[turn.kind]->elements, turn.rotation, lines);
-    });
+    const SunLines& lines = lit_->lines.emplace_back(sunLines(lighting_->suns[sun].along, line_area, stand_.period));
+    tbb::parallel_for(std::size_t{0}, turns_.size(), [&](std::size_t i) { pictureOf(*turns_[i], sun); });
     std::vector<SunlitTree> trees;
     for (std::size_t i = 0; i < stand_.trees.size(); ++i)
       trees.push_back({.picture = &turns_[turn_of_tree_[i]]->picture,
@@ -55,7 +67,13 @@ void LargeStandField::makeSuns(std::span<const std::size_t> seen) {
                        .position = stand_.trees[i].position});
     auto& of_seen = lit_->of_seen[sun];
     of_seen.resize(trees.size());
-    for (const std::size_t tree : seen) of_seen[tree].assign(trees[tree].sides, 0);
+    std::vector<LitPixels>& pixels = lit_->pixels[sun];
+    pixels.resize(trees.size());
+    for (const std::size_t tree : seen) {
+      of_seen[tree].assign(trees[tree].sides, 0);
+      pixels[tree] = LitPixels(*trees[tree].picture);
+      trees[tree].pixels = &pixels[tree];
+    }
     std::vector<std::uint32_t>& of_cells = lit_->of_cells.emplace_back(2 * stats_.elements);
     std::vector<std::uint32_t>& shaded =
         lit_->shaded.emplace_back(static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y));

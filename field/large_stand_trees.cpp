@@ -11,6 +11,7 @@
 
 #include "field/detail/large_stand_state.hpp"
 #include "field/field_solver.hpp"
+#include "field/sunlit_ends.hpp"
 #include "sky/sky_shares.hpp"
 
 namespace sunfleck {
@@ -197,11 +198,56 @@ std::vector<std::vector<float>> LargeStandField::lightAtWalls(std::span<const st
   return around;
 }
 
+// (F3) Irradiance of each side of a tree's elements by a sun of irradiance 1.
+std::vector<float> LargeStandField::directLight(std::size_t tree, std::size_t sun) const {
+  const FieldElements& elements = kinds_[stand_.trees[tree].kind]->elements;
+  std::vector<float> irradiance(2 * elements.size());
+  for (std::size_t side = 0; side < irradiance.size(); ++side)
+    irradiance[side] = static_cast<float>(lit_->lines[sun].line_area) *
+                       static_cast<float>(lit_->of_seen[sun][tree][side]) / elements.area[side / 2];
+  return irradiance;
+}
+
+// (F6) Of each tree, band after band, what the lines of its sides bring of direct light, scattered once where it falls.
+std::vector<std::vector<float>> LargeStandField::scatteredOnce(std::span<const std::size_t> now) const {
+  const FieldLighting& lighting = *lighting_;
+  const std::size_t bands = lit_->bands.size();
+  std::vector<std::vector<float>> once(now.size());
+  // Trees that are turned alike share what their lines see in the sun's picture.
+  std::vector<std::vector<std::size_t>> of_turns(turns_.size());
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    of_turns[turn_of_tree_[now[i]]].push_back(i);
+    once[i].resize(2 * kinds_[stand_.trees[now[i]].kind]->elements.size() * bands);
+  }
+  std::erase_if(of_turns, [](const auto& of_turn) { return of_turn.empty(); });
+  for (std::size_t sun = lighting.suns.size(); sun-- > 0;)
+    tbb::parallel_for(std::size_t{0}, of_turns.size(), [&](std::size_t number) {
+      Turn& turn = *turns_[turn_of_tree_[now[of_turns[number].front()]]];
+      const Kind& kind = *kinds_[turn.kind];
+      const SunlitEnds ends(kind.elements, kind.exchange, turn.rotation, lit_->lines[sun], pictureOf(turn, sun));
+      tbb::parallel_for(std::size_t{0}, of_turns[number].size(), [&](std::size_t k) {
+        const std::size_t i = of_turns[number][k];
+        const std::vector<glm::vec3> brought = ends.scatteredOnce(directLight(now[i], sun), lit_->pixels[sun][now[i]]);
+        for (std::size_t b = 0; b < bands; ++b) {
+          const std::size_t band = lit_->bands[b];
+          const ElementOptics leaf = detail::opticsOf(lighting.kinds[turn.kind], false, band),
+                              wood = detail::opticsOf(lighting.kinds[turn.kind], true, band);
+          const glm::vec3 share = lighting.suns[sun].irradiance[static_cast<int>(band)] *
+                                  glm::vec3(leaf.reflectance, leaf.transmittance, wood.reflectance);
+          float* const of_band = once[i].data() + b * brought.size();
+          for (std::size_t side = 0; side < brought.size(); ++side) of_band[side] += glm::dot(share, brought[side]);
+        }
+      });
+    });
+  return once;
+}
+
 void LargeStandField::solveAlongLines(std::span<const std::size_t> now, std::span<const std::vector<float>> around) {
   const FieldLighting& lighting = *lighting_;
   const std::size_t bands = lit_->bands.size();
   const Stopwatch watch(costs_[detail::kTrees].seconds);
   costs_[detail::kTrees].made += now.size();
+  const std::vector<std::vector<float>> once = scatteredOnce(now);
   // Trees of a kind side by side.
   std::vector<std::size_t> order(now.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -236,23 +282,29 @@ void LargeStandField::solveAlongLines(std::span<const std::size_t> now, std::spa
     const std::size_t sides = 2 * elements.size();
     std::vector<DirectLight> direct;           // of each tree and band
     std::vector<std::vector<float>> arriving;  // and what comes from other trees, sky and ground
-    for (std::size_t i = first; i < last; ++i)
+    for (std::size_t i = first; i < last; ++i) {
       for (std::size_t b = 0; b < bands; ++b) {
-        const int band = static_cast<int>(lit_->bands[b]);
-        DirectLight& of_suns = direct.emplace_back(DirectLight{.irradiance = std::vector<float>(sides)});
-        std::vector<float>& around_tree = arriving.emplace_back(sides);
-        for (std::size_t side = 0; side < sides; ++side) {
-          for (std::size_t sun = 0; sun < lighting.suns.size(); ++sun)
-            of_suns.irradiance[side] +=
-                lighting.suns[sun].irradiance[band] * static_cast<float>(lit_->lines[sun].line_area) *
-                static_cast<float>(lit_->of_seen[sun][now[order[i]]][side]) / elements.area[side / 2];
-          of_suns.power += double{of_suns.irradiance[side]} * double{elements.area[side / 2]};
-          around_tree[side] = around[order[i]][side * bands + b];
-        }
+        direct.emplace_back(DirectLight{.irradiance = std::vector<float>(sides)});
+        arriving.emplace_back(sides);
+        for (std::size_t side = 0; side < sides; ++side) arriving.back()[side] = around[order[i]][side * bands + b];
       }
+      for (std::size_t sun = 0; sun < lighting.suns.size(); ++sun) {
+        const std::vector<float> of_sun = directLight(now[order[i]], sun);
+        for (std::size_t b = 0; b < bands; ++b)
+          for (std::size_t side = 0; side < sides; ++side)
+            direct[(i - first) * bands + b].irradiance[side] +=
+                lighting.suns[sun].irradiance[static_cast<int>(lit_->bands[b])] * of_sun[side];
+      }
+    }
     std::vector<FieldProblem> problems;
-    for (std::size_t p = 0; p < direct.size(); ++p)
-      problems.push_back({.direct = &direct[p], .arriving = arriving[p], .optics = optics[number][p % bands]});
+    for (std::size_t p = 0; p < direct.size(); ++p) {
+      for (std::size_t side = 0; side < sides; ++side)
+        direct[p].power += double{direct[p].irradiance[side]} * double{elements.area[side / 2]};
+      problems.push_back({.direct = &direct[p],
+                          .scattered_once = std::span(once[order[first + p / bands]]).subspan(p % bands * sides, sides),
+                          .arriving = arriving[p],
+                          .optics = optics[number][p % bands]});
+    }
     const std::vector<FieldSolution> solutions = tbb::this_task_arena::isolate(
         [&] { return solveField(kind.geometry(), problems, stays[number], effort_.solver); });
     FieldResult& of_batch = of_batches[batch];
@@ -293,7 +345,7 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
   const Sent sent = this->sent();
   double of_tree = 1.;
   for (const auto& kind : kinds_)
-    if (kind) of_tree = std::max(of_tree, 8. * static_cast<double>(kind->elements.size() * lit_->bands.size()));
+    if (kind) of_tree = std::max(of_tree, 16. * static_cast<double>(kind->elements.size() * lit_->bands.size()));
   const auto chunk = std::max<std::size_t>(16, static_cast<std::size_t>(detail::kLargeStandLight / of_tree));
   for (std::size_t begin = 0; begin < seen.size(); begin += chunk) {
     const std::span<const std::size_t> now = seen.subspan(begin, std::min(chunk, seen.size() - begin));

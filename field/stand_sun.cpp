@@ -177,13 +177,24 @@ void shineOn(std::span<const SunlitTree> trees, const SunLines& lines,
       const TreePicture& picture = *trees[copy.tree].picture;
       const float more = depths[copy.tree];
       work.lines.assign(trees[copy.tree].sides, 0);
+      LitPixels* const pixels = trees[copy.tree].pixels;
       bool any = false;
+      std::size_t word = 0;
+      std::uint64_t of_word = 0;
       each(copy, [&](std::size_t at, std::size_t from) {
         const float depth = picture.depth[from] + more;
         if (depth == kNothing || depth > work.depth[at]) return;
         ++work.lines[picture.side[from]];
         any = true;
+        if (!pixels) return;
+        if (from / LitPixels::kBits != word) {
+          if (of_word != 0) pixels->add(word, of_word);
+          word = from / LitPixels::kBits;
+          of_word = 0;
+        }
+        of_word |= std::uint64_t{1} << (from % LitPixels::kBits);
       });
+      if (of_word != 0) pixels->add(word, of_word);
       if (any) lit(copy.tree, work.lines);
     }
     if (seen) seen({corner, end - corner, kTile, work.depth});

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
@@ -36,11 +38,28 @@ struct TreePicture {
 };
 TreePicture treePicture(const TreeMesh& mesh, const FieldElements& elements, float rotation, const SunLines& lines);
 
+// Which pixels of a tree's picture the sun reaches: those that show something, where no other tree is before it.
+class LitPixels {
+ public:
+  LitPixels() = default;
+  explicit LitPixels(const TreePicture& picture) : bits_((picture.side.size() + kBits - 1) / kBits) {}
+  bool lit(std::size_t pixel) const { return (bits_[pixel / kBits] >> (pixel % kBits) & 1u) != 0; }
+  // Pixels number `word` times 64 and on; may be called by several threads.
+  void add(std::size_t word, std::uint64_t lit) {
+    std::atomic_ref(bits_[word]).fetch_or(lit, std::memory_order_relaxed);
+  }
+  static constexpr std::size_t kBits = 64;
+
+ private:
+  std::vector<std::uint64_t> bits_;
+};
+
 // A tree before the sun.
 struct SunlitTree {
   const TreePicture* picture = nullptr;
-  std::size_t sides = 0;    // of its elements
-  glm::vec3 position{0.f};  // [m]
+  std::size_t sides = 0;        // of its elements
+  glm::vec3 position{0.f};      // [m]
+  LitPixels* pixels = nullptr;  // where they are told; none: nowhere
 };
 
 // Part of the whole picture: depths of what the sun sees, row by row, infinite where it is nothing.

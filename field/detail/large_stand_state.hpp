@@ -38,25 +38,26 @@ struct LargeStandField::Kind {
   std::vector<std::uint32_t> materials;  // 0 of leaves, 1 of wood
   LineExchange exchange;
   OutsideLines outside;
-  std::vector<float> per_line;  // irradiance of each element by radiance 1 on one line
-  double escape = 0.;           // share of the lines from its leaves that leave the tree
+  std::vector<float> near_return;  // (F7) of leaves and of wood
+  std::vector<float> per_line;     // irradiance of each element by radiance 1 on one line
+  double escape = 0.;              // share of the lines from its leaves that leave the tree
   LeafClusters clusters;
   ClusterGroups groups;
   std::vector<std::uint32_t> group_side;  // of each side of each element
   Bounds box;
 
-  // Direct light is taken as scattered from all of a side alike, of which near return (F7) would be the other half.
-  static constexpr std::array<float, 2> kNoReturn{};
-  FieldGeometry geometry() const { return {elements, exchange, materials, kNoReturn, false}; }
+  FieldGeometry geometry() const { return {elements, exchange, materials, near_return, false}; }
 };
 
 // Trees of a kind that are turned alike.
 struct LargeStandField::Turn {
+  static constexpr std::size_t kNoSun = ~std::size_t{0};
   std::uint32_t kind = 0;
   float rotation = 0.f;
   TurnedClusters clusters;
   Bounds box;                          // of leaves and wood
-  TreePicture picture;                 // of the sun whose light is followed
+  TreePicture picture;                 // as a sun sees it
+  std::size_t of_sun = kNoSun;         // that sun, of the present ones
   std::vector<std::uint32_t> nearest;  // of each direction of the exchange, as it is turned, the nearest that is not
 };
 
@@ -66,6 +67,7 @@ struct LargeStandField::Lit {
   std::vector<std::vector<std::uint32_t>> of_cells;  // of each sun, lines that come to each element's sides
   std::vector<std::vector<std::uint32_t>> shaded;    // of each sun, lines that do not come to each column's ground
   std::vector<std::vector<std::vector<std::uint32_t>>> of_seen;  // of each sun, of each tree, lines to its sides
+  std::vector<std::vector<LitPixels>> pixels;                    // and to which pixels of its picture they come
   std::vector<std::size_t> bands;                                // that differ
   std::array<std::size_t, kBands> as{};                          // of which of those each band is
   std::vector<GridSolution> solutions;                           // of those
