@@ -124,12 +124,13 @@ SunlitEnds::SunlitEnds(const FieldElements& elements, const LineExchange& exchan
     const std::size_t end = std::min(exchange.sides(), (number + 1) * kBlock);
     for (std::size_t side = number * kBlock; side < end; ++side) {
       for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i)
-        if (lookup.shows(exchange.sees[i] / 2)) places.push_back(lookup.placeAt(exchange.sees[i], exchange.seen_at[i]));
+        if (lookup.shows(exchange.sees[i] / 2))
+          places.push_back(lookup.placeAt(exchange.sees[i], exchange.crossed_at[exchange.seen_at[i]]));
       look(block.seen,
            [&](bool through) { block.by.push_back(static_cast<std::uint32_t>(side) | (through ? kThrough : 0)); });
       const auto from = static_cast<std::uint32_t>(side);
       for (std::uint64_t i = exchange.first_outside[side]; i < exchange.first_outside[side + 1]; ++i)
-        if (lookup.shows(from / 2)) places.push_back(lookup.placeAt(from, exchange.open_at[i]));
+        if (lookup.shows(from / 2)) places.push_back(lookup.placeAt(from, exchange.crossed_at[exchange.open_at[i]]));
       look(block.open, [](bool) {});
     }
   });
