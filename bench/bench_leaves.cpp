@@ -5,6 +5,7 @@
 
 #include "leaves/light_bands.hpp"
 #include "leaves/prospect.hpp"
+#include "leaves/prospect_fit.hpp"
 
 namespace {
 
@@ -28,5 +29,20 @@ void rgb(benchmark::State& state) {
   if (!(bands[1].reflectance > bands[2].reflectance)) state.SkipWithError("a green leaf is not green");
 }
 BENCHMARK(rgb)->Unit(benchmark::kMicrosecond);
+
+// Seven contents from reflectance and transmittance at 2101 wavelengths.
+void fit(benchmark::State& state) {
+  const LeafContents truth{.structure = 1.8, .chlorophyll = 25., .anthocyanins = 3., .brown_pigments = 0.2};
+  MeasuredSpectrum measured;
+  for (const LeafSides& sides : prospect(truth).sides) {
+    measured.wavelengths.push_back(kFirstWavelength + static_cast<double>(measured.wavelengths.size()));
+    measured.reflectance.push_back(sides.reflectance);
+    measured.transmittance.push_back(sides.transmittance);
+  }
+  ProspectFit found;
+  for (auto _ : state) found = fitProspect(measured);
+  if (!(std::abs(found.contents.chlorophyll - truth.chlorophyll) < 1e-3)) state.SkipWithError("chlorophyll is wrong");
+}
+BENCHMARK(fit)->Unit(benchmark::kMillisecond);
 
 }  // namespace
