@@ -46,7 +46,6 @@ class Fitting {
       held[index] = true;
       start_.*leafContents()[index].value = value;
     }
-    validate(start_, "held ");
     for (std::size_t i = 0; i < leafContents().size(); ++i) {
       const LeafContent& content = leafContents()[i];
       const bool part = content.name == "protein" || content.name == "carbon_constituents";
@@ -58,6 +57,7 @@ class Fitting {
       State state = held[i] ? State::held : State::found;
       each_.push_back({.content = &content, .state = state, .value = start_.*content.value});
     }
+    validate(start_, "held ");
     findUnseen();
     if (data() < sought_.size())
       throw InvalidInput(fmt::format("measured values = {}: must be at least as many as the {} contents to find",
