@@ -8,6 +8,7 @@
 #include "apps/csv_rows.hpp"
 #include "apps/leaf_options.hpp"
 #include "apps/leaf_output.hpp"
+#include "apps/leaf_tissue.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "leaves/prospect.hpp"
@@ -19,6 +20,7 @@ struct LeafCommand {
   std::string species, prospect, bands;
   std::string fit, held;
   bool parts = false, list = false;
+  std::string tissue, sides;
   std::string csv, bands_csv, plot;
 };
 
@@ -79,6 +81,11 @@ int runList(const RunOptions& run) {
 
 int runLeaf(const LeafCommand& options, const RunOptions& run) {
   if (options.list) return runList(run);
+  if (!options.tissue.empty() || !options.sides.empty()) {
+    fmt::print("{}",
+               options.sides.empty() ? tissueReport(options.tissue, run.json) : sidesReport(options.sides, run.json));
+    return 0;
+  }
   for (const auto& [file, extension] :
        {std::pair(&options.csv, ".csv"), {&options.bands_csv, ".csv"}, {&options.plot, ".svg"}})
     if (!file->empty()) requireNamed(*file, extension);
@@ -144,11 +151,20 @@ void addLeaf(CLI::App& app, RunOptions& options, int& status) {
   CLI::Option* bands_csv =
       command->add_option("--bands-csv", leaf->bands_csv, "File for --bands, as trace --spectrum takes them: .csv");
   CLI::Option* plot = command->add_option("--plot", leaf->plot, "Draw the spectrum into this SVG file");
+  CLI::Option* tissue = command->add_option(
+      "--tissue", leaf->tissue, "A leaf as a slab: absorption=..,scattering=..,thickness=.. in 1/mm and mm");
+  CLI::Option* sides = command->add_option(
+      "--sides", leaf->sides, "The slab behind reflectance=..,transmittance=..[,thickness=..] (default 0.2 mm)");
+  tissue->excludes(sides);
+  for (CLI::Option* option : {species, contents, fit, held, bands, csv, bands_csv, plot, list}) {
+    tissue->excludes(option);
+    sides->excludes(option);
+  }
   fit->excludes(species)->excludes(contents);
   parts->needs(fit);
   held->needs(fit);
   bands_csv->needs(bands);
-  for (CLI::Option* option : {species, contents, fit, held, bands, csv, bands_csv, plot}) {
+  for (CLI::Option* option : {species, contents, fit, held, bands, csv, bands_csv, plot, tissue, sides}) {
     list->excludes(option);
     option->check([](const std::string& text) { return text.empty() ? "must not be empty" : std::string(); });
   }

@@ -357,6 +357,7 @@ seed = 1
 # leaf_transmittance = 0.475
 # leaf_species = "beech"      # or by what they are: see [leaf]
 # leaf_prospect = { chlorophyll = 40.0 }
+# leaf_slab = { absorption = [1.5, 0.4, 5.0], scattering = 10.0, thickness = 0.2 }
 # leaf_gloss = 0.0
 # leaf_gloss_roughness = 0.3
 # wood_reflectance = 0.3
@@ -377,8 +378,7 @@ seed = 1
                               # file's where it tells them
 # reflectance = 0.475         # of leaves; those of the file in the mean, or of [leaf], if not given
 # transmittance = 0.475
-# species = "beech"           # or by what they are: see [leaf]
-# prospect = { chlorophyll = 40.0 }
+# species = "beech"           # or by species, prospect or slab: see [leaf]
 # albedo = 1.0                # of particles, 0 to 1
 # asymmetry = 0.0             # of particles: mean cosine of scattering, -0.999 to 0.999
 # Several media, a [[medium]] for each, may fill the same space.
@@ -401,6 +401,7 @@ transmittance = 0.475         # 0 to 1
                               # what is different about it
 # bands_nm = [[620, 680], [520, 570], 450]   # what the three bands are, of species and contents alone: from and to, or one
                               # wavelength, 400 to 2500; red, green and blue as the eye has them if not given
+# slab = { absorption = [1.5, 0.4, 5.0], scattering = 10.0, thickness = 0.2 }   # or even tissue: 1/mm, 1/mm and mm
 gloss = 0.0                   # intensity of a glossy reflection on both sides, 0 to 1; the two above are then shares of
                               # the light it lets in. trace and render take it, validate does not
 gloss_roughness = 0.3         # root mean square slope of its facets, 0.05 to 1; one number

@@ -2,17 +2,46 @@
 
 #include "leaves/measured_leaves.hpp"
 #include "leaves/prospect.hpp"
+#include "leaves/slab_leaf.hpp"
 
 namespace sunfleck::detail {
 namespace {
 
+// Throws where the table tells its leaves in more than one way.
+void requireOneWay(const SceneTable& table, const std::string& prefix) {
+  const std::vector<std::vector<std::string>> ways{{"species", "prospect"}, {"slab"}, {"reflectance", "transmittance"}};
+  std::string first;
+  for (const std::vector<std::string>& way : ways) {
+    std::string found;
+    for (const std::string& key : way)
+      if (found.empty() && table.has(prefix + key)) found = prefix + key;
+    if (!first.empty() && !found.empty())
+      throw InvalidInput(
+          fmt::format("{}: [{}] has both {} and {}: must be one of them", table.file(), table.name(), first, found));
+    if (first.empty()) first = found;
+  }
+}
+
+BandOptics opticsBySlab(SceneTable& table, const std::string& key) {
+  SceneTable slab = table.within(key);
+  for (const char* part : {"absorption", "scattering", "thickness"})
+    if (!slab.has(part))
+      throw InvalidInput(fmt::format("{}: {} has no {}: must have absorption, scattering and thickness", slab.file(),
+                                     slab.name(), part));
+  const glm::vec3 absorption = slab.perBand("absorption", {}, 1e6), scattering = slab.perBand("scattering", {}, 1e6);
+  const double thickness = slab.number("thickness", 0., 0., 1000., "in [0, 1000] mm");
+  slab.done();
+  BandOptics optics;
+  for (int band = 0; band < kBands; ++band)
+    optics[static_cast<std::size_t>(band)] = leafOptics(
+        slabLeaf(
+            {.absorption = double{absorption[band]}, .scattering = double{scattering[band]}, .thickness = thickness})
+            .sides);
+  return optics;
+}
+
 BandOptics opticsByContents(SceneTable& table, const std::string& prefix, const LightBands& bands) {
   const std::string species = prefix + "species", prospect_key = prefix + "prospect";
-  for (const char* share : {"reflectance", "transmittance"})
-    for (const std::string& key : {species, prospect_key})
-      if (table.has(key) && table.has(prefix + share))
-        throw InvalidInput(fmt::format("{}: [{}] has both {} and {}{}: must be one of them", table.file(), table.name(),
-                                       key, prefix, share));
   LeafContents leaf;
   if (table.has(species))
     leaf =
@@ -45,8 +74,10 @@ LightBands readLightBands(SceneTable& leaf) {
 }
 
 void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, BandOptics& optics) {
-  if (table.has(prefix + "species") || table.has(prefix + "prospect")) {
-    const BandOptics leaf = opticsByContents(table, prefix, bands);
+  requireOneWay(table, prefix);
+  const bool slab = table.has(prefix + "slab");
+  if (slab || table.has(prefix + "species") || table.has(prefix + "prospect")) {
+    const BandOptics leaf = slab ? opticsBySlab(table, prefix + "slab") : opticsByContents(table, prefix, bands);
     for (std::size_t band = 0; band < kBands; ++band) {
       optics[band].reflectance = leaf[band].reflectance;
       optics[band].transmittance = leaf[band].transmittance;

@@ -39,6 +39,12 @@ does "not seen by these data" leaf --fit visible.csv
 { cat visible.csv; echo "350,0.05"; } >wide.csv
 does "1 outside of 400 to 2500 nm left out" leaf --fit wide.csv
 
+does "A                        0.594" leaf --tissue absorption=0.5,scattering=4.5,thickness=0.2
+does '"reflectance": 0.26741' leaf --tissue absorption=0.5,scattering=4.5,thickness=0.2 --json
+does "transmittance                0.35" leaf --sides reflectance=0.4,transmittance=0.35
+printf '[tree]\nfile = "leaf.obj"\n[leaf]\nslab = { absorption = 0.5, scattering = 4.5, thickness = 0.2 }\n' >slab.toml
+does "back to the sky" trace slab.toml --paths 1000 --quiet
+
 # What is wrong.
 refuses 'species = "oak": must be one of: almond' leaf oak
 refuses '"chlorophyll": must be NAME=VALUE' leaf --prospect chlorophyll
@@ -75,6 +81,13 @@ refuses "far.csv: must have at least one row in [400, 2500] nm" leaf --fit far.c
 refuses "beech.csv: held sugar: must be one of" leaf --fit beech.csv --hold sugar=1
 refuses "held protein: must be a content of this kind of leaf" leaf --fit beech.csv --hold protein=0.01
 refuses "--json" leaf --list --json
+refuses "--tissue: thickness: must be told" leaf --tissue absorption=1,scattering=2
+refuses "--tissue: gloss: must be one of: absorption, scattering, thickness" leaf --tissue gloss=1
+refuses "--tissue: absorption = -1: must be in [0, 1e6] 1/mm" leaf --tissue absorption=-1,scattering=2,thickness=1
+refuses "--sides: reflectance + transmittance = 1.25: must be at most 1" leaf --sides reflectance=0.5,transmittance=0.75
+refuses "--sides: transmittance = 0: must be in [1e-4, 1]" leaf --sides reflectance=0.5,transmittance=0
+refuses "--sides: thickness = 0: must be above 0" leaf --sides reflectance=0.5,transmittance=0.2,thickness=0
+refuses "excludes" leaf beech --sides reflectance=0.5,transmittance=0.2
 refuses "excludes" trace leaf.obj --leaf-species corn --albedo 0.5
 refuses '--leaf-species = "oak": must be one of' trace leaf.obj --leaf-species oak
 refuses "--leaf-prospect: water = 11: must be" render leaf.obj --leaf-prospect water=11 -o y.png

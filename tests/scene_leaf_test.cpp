@@ -9,6 +9,7 @@
 #include "leaves/light_bands.hpp"
 #include "leaves/measured_leaves.hpp"
 #include "leaves/prospect.hpp"
+#include "leaves/slab_leaf.hpp"
 #include "render/scene_file.hpp"
 #include "render/scene_writer.hpp"
 #include "render/sweep_file.hpp"
@@ -114,6 +115,19 @@ bands_nm = [[620, 680], 850, 450.5]
   EXPECT_EQ(readScene((folder_ / "again.toml").string()).kinds[0].leaf, scene.kinds[0].leaf);
 }
 
+// Check leaves that are slabs of tissue, and that three numbers are those of the three bands.
+TEST_F(SceneLeaf, IsASlabOfTissue) {
+  const Scene scene = readScene(write("s.toml", R"(
+[tree]
+file = "tree.obj"
+leaf_slab = { absorption = [2.0, 0.5, 4.0], scattering = 10.0, thickness = 0.2 }
+)"));
+  const double absorption[] = {2., 0.5, 4.};
+  for (std::size_t band = 0; band < kBands; ++band)
+    EXPECT_EQ(scene.kinds[0].leaf[band],
+              leafOptics(slabLeaf({.absorption = absorption[band], .scattering = 10., .thickness = 0.2}).sides));
+}
+
 // Check that each mistake is told with its file, key, value and rule.
 TEST_F(SceneLeaf, RefusesWhatIsNoLeaf) {
   const auto refuses = [&](const std::string& keys, const std::string& expected) {
@@ -133,6 +147,11 @@ TEST_F(SceneLeaf, RefusesWhatIsNoLeaf) {
   refuses("bands_nm = [[600], 550, 450]", "s.toml:4: leaf.bands_nm = [ 600 ]: must be three bands");
   refuses("species = \"corn\"\nreflectance = 0.4", "[leaf] has both species and reflectance: must be one of them");
   refuses("prospect = { }\ntransmittance = 0.4", "[leaf] has both prospect and transmittance: must be one of them");
+  refuses("slab = { absorption = 1.0, scattering = 10.0 }", "s.toml: leaf.slab has no thickness: must have absorption");
+  refuses("slab = { absorption = -1.0, scattering = 10.0, thickness = 0.2 }", "leaf.slab.absorption = -1: must be in");
+  refuses("slab = { absorption = 1.0, scattering = 10.0, thickness = 0.2, h = 1 }", "unknown key \"h\" in [leaf.slab]");
+  refuses("slab = { absorption = 1.0, scattering = 10.0, thickness = 0.2 }\nspecies = \"corn\"",
+          "[leaf] has both species and slab: must be one of them");
   EXPECT_NE(refusal("[tree]\nfile = \"tree.obj\"\nleaf_species = \"oak\"\n").find("tree.leaf_species = \"oak\""),
             std::string::npos);
 }
