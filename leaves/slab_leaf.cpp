@@ -16,7 +16,7 @@ namespace {
 constexpr int kStreams = 32, kMapStreams = 16;
 constexpr double kThinnest = 1e-12;  // optical thickness below which light passes as if there were nothing
 constexpr double kLeastTransmittance = 1e-4;
-constexpr int kMostSteps = 60;
+constexpr int kMostRounds = 100;
 constexpr double kNearEnough = 1e-9;  // of reflectance and transmittance
 
 // Absorption and scattering times thickness [1].
@@ -42,9 +42,70 @@ Optical firstGuess(const LeafSides& sides) {
 
 // One place of a map on its way to the tissue.
 struct Search {
-  Optical at, best;
-  double best_residual = 2.;
+  Optical at;                                 // to be tried
+  Optical best;                               // nearest so far ...
+  LeafSides of_best;                          // ... which reflects and lets through this ...
+  double residual = 2.;                       // ... and is off by so much
+  double ra = 0., rs = 0., ta = 0., ts = 0.;  // slopes of R and T by absorption and scattering
+  bool fresh = false;                         // slopes are those at the best, not carried there from elsewhere
+  bool ask_slopes = true;                     // try two places beside `at`, too
+
+  // What the slab that was tried, and those beside it if slopes were asked for, send back and let through.
+  void take(const LeafSides& measured, const pp::SlabFluxes* flux);
+
+ private:
+  void step(const LeafSides& measured);
 };
+
+double beside(const Optical& at) {
+  return 1e-6 * at.thickness() + 1e-9;
+}
+
+void Search::take(const LeafSides& measured, const pp::SlabFluxes* flux) {
+  const double r = flux[0].reflectance, t = flux[0].transmittance;
+  const double off = std::max(std::abs(measured.reflectance - r), std::abs(measured.transmittance - t));
+  if (ask_slopes) {
+    const double h = beside(at);
+    ra = (flux[1].reflectance - r) / h;
+    rs = (flux[2].reflectance - r) / h;
+    ta = (flux[1].transmittance - t) / h;
+    ts = (flux[2].transmittance - t) / h;
+  } else if (off < residual) {
+    // Broyden 1965: the slopes that differ least from those before and explain what the step has brought.
+    const double a = at.absorbing - best.absorbing, s = at.scattering - best.scattering, length2 = a * a + s * s;
+    const double r_left = (r - of_best.reflectance - ra * a - rs * s) / length2;
+    const double t_left = (t - of_best.transmittance - ta * a - ts * s) / length2;
+    ra += r_left * a;
+    rs += r_left * s;
+    ta += t_left * a;
+    ts += t_left * s;
+  }
+  if (ask_slopes || off < residual) {
+    best = at;
+    of_best = {.reflectance = r, .transmittance = t};
+    residual = off;
+    fresh = ask_slopes;
+    ask_slopes = false;
+    step(measured);
+  } else if (fresh) {
+    at = {.absorbing = 0.5 * (best.absorbing + at.absorbing), .scattering = 0.5 * (best.scattering + at.scattering)};
+  } else {
+    at = best;
+    ask_slopes = true;
+  }
+}
+
+// Newton's step. Neither coefficient becomes less than a tenth of what it was: both are positive.
+void Search::step(const LeafSides& measured) {
+  const double dr = measured.reflectance - of_best.reflectance, dt = measured.transmittance - of_best.transmittance;
+  const double determinant = ra * ts - rs * ta;
+  if (determinant == 0. || !std::isfinite(determinant)) {
+    ask_slopes = !fresh;
+    return;
+  }
+  at = {.absorbing = std::max(best.absorbing + (dr * ts - rs * dt) / determinant, 0.1 * best.absorbing),
+        .scattering = std::max(best.scattering + (ra * dt - dr * ta) / determinant, 0.1 * best.scattering)};
+}
 
 }  // namespace
 
@@ -94,59 +155,37 @@ std::vector<TissueFit> tissueOf(std::span<const LeafSides> measured, double thic
             "at most 1");
     searches[i].at = firstGuess(measured[i]);
   }
-  // Newton's method at all places at once: three slabs of each, at the place and beside it by both coefficients. Where
-  // a step gains nothing, half of it is tried.
+  // All places at once. Slopes cost two slabs more: they are computed where a search begins, and again where those that
+  // were carried along lead nowhere.
   std::vector<std::size_t> active(measured.size());
   std::iota(active.begin(), active.end(), std::size_t{0});
   std::vector<pp::SlabCase> slabs;
   std::vector<pp::SlabFluxes> fluxes;
-  for (int step = 0; step < kMostSteps && !active.empty(); ++step) {
-    const auto beside = [](const Optical& at) { return 1e-6 * at.thickness() + 1e-9; };
+  for (int round = 0; round < kMostRounds && !active.empty(); ++round) {
     slabs.clear();
     for (const std::size_t i : active) {
       const Optical& at = searches[i].at;
       slabs.push_back(slabOf(at));
+      if (!searches[i].ask_slopes) continue;
       slabs.push_back(slabOf({.absorbing = at.absorbing + beside(at), .scattering = at.scattering}));
       slabs.push_back(slabOf({.absorbing = at.absorbing, .scattering = at.scattering + beside(at)}));
     }
     fluxes.resize(slabs.size());
     pp::solveSlabs(slabs, fluxes, kMapStreams);
-    std::vector<std::size_t> left;
-    for (std::size_t j = 0; j < active.size(); ++j) {
-      Search& search = searches[active[j]];
-      const pp::SlabFluxes* flux = &fluxes[3 * j];
-      const double dr = measured[active[j]].reflectance - flux[0].reflectance;
-      const double dt = measured[active[j]].transmittance - flux[0].transmittance;
-      const double residual = std::max(std::abs(dr), std::abs(dt));
-      const Optical tried = search.at;
-      if (residual >= search.best_residual) {
-        search.at = {.absorbing = 0.5 * (search.best.absorbing + tried.absorbing),
-                     .scattering = 0.5 * (search.best.scattering + tried.scattering)};
-      } else {
-        search.best = tried;
-        search.best_residual = residual;
-        const double h = beside(tried);
-        const double ra = (flux[1].reflectance - flux[0].reflectance) / h,
-                     rs = (flux[2].reflectance - flux[0].reflectance) / h,
-                     ta = (flux[1].transmittance - flux[0].transmittance) / h,
-                     ts = (flux[2].transmittance - flux[0].transmittance) / h;
-        const double determinant = ra * ts - rs * ta;
-        if (determinant == 0. || !std::isfinite(determinant)) continue;
-        // Neither becomes less than a tenth of what it was: both are positive.
-        search.at = {
-            .absorbing = std::max(tried.absorbing + (dr * ts - rs * dt) / determinant, 0.1 * tried.absorbing),
-            .scattering = std::max(tried.scattering + (ra * dt - dr * ta) / determinant, 0.1 * tried.scattering)};
-      }
-      if (search.best_residual > kNearEnough) left.push_back(active[j]);
-    }
-    active.swap(left);
+    const pp::SlabFluxes* flux = fluxes.data();
+    std::erase_if(active, [&](std::size_t i) {
+      const int used = searches[i].ask_slopes ? 3 : 1;
+      searches[i].take(measured[i], flux);
+      flux += used;
+      return searches[i].residual <= kNearEnough;
+    });
   }
   std::vector<TissueFit> fits(measured.size());
   for (std::size_t i = 0; i < measured.size(); ++i)
     fits[i] = {.tissue = {.absorption = searches[i].best.absorbing / thickness,
                           .scattering = searches[i].best.scattering / thickness,
                           .thickness = thickness},
-               .residual = searches[i].best_residual};
+               .residual = searches[i].residual};
   return fits;
 }
 
