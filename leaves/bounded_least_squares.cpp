@@ -1,8 +1,9 @@
 #include "leaves/detail/bounded_least_squares.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
 namespace sunfleck::detail {
 namespace {
@@ -18,6 +19,24 @@ std::vector<Eigen::Index> freeOf(const Eigen::VectorXd& x, const Eigen::VectorXd
   for (Eigen::Index i = 0; i < x.size(); ++i)
     if (!(x[i] <= low[i] && gradient[i] >= 0.) && !(x[i] >= high[i] && gradient[i] <= 0.)) free.push_back(i);
   return free;
+}
+
+// The diagonal of (J^T J)^-1; infinite for parameters that share in a direction in which J is 0 but for rounding.
+Eigen::VectorXd inverseDiagonal(const Eigen::MatrixXd& slopes) {
+  constexpr double kRounding = 1e-12;  // of slopes' products, of length 1
+  const Eigen::VectorXd lengths = slopes.colwise().norm();
+  const Eigen::MatrixXd alike = slopes * lengths.cwiseMax(1e-300).cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(alike.transpose() * alike);
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(lengths.size());
+  for (Eigen::Index mode = 0; mode < lengths.size(); ++mode)
+    for (Eigen::Index i = 0; i < lengths.size(); ++i) {
+      const double share = std::pow(modes.eigenvectors()(i, mode), 2), length = modes.eigenvalues()[mode];
+      if (length > kRounding)
+        diagonal[i] += share / (length * lengths[i] * lengths[i]);
+      else if (share > 1e-6)
+        diagonal[i] = std::numeric_limits<double>::infinity();
+    }
+  return diagonal;
 }
 
 }  // namespace
@@ -58,12 +77,10 @@ BoundedFit fitWithin(const Eigen::VectorXd& start, const Eigen::VectorXd& low, c
   free = freeOf(fit.parameters, low, high, now.slopes.transpose() * now.values);
   fit.at_bound.assign(static_cast<std::size_t>(start.size()), true);
   for (const Eigen::Index i : free) fit.at_bound[static_cast<std::size_t>(i)] = false;
-  fit.covariance = Eigen::MatrixXd::Zero(start.size(), start.size());
-  const Eigen::Index more = now.values.size() - static_cast<Eigen::Index>(free.size());
-  if (!free.empty() && more > 0) {
-    const Eigen::MatrixXd slopes = now.slopes(Eigen::all, free);
-    fit.covariance(free, free) =
-        (slopes.transpose() * slopes).fullPivLu().inverse() * (fit.squares / static_cast<double>(more));
+  fit.variances = Eigen::VectorXd::Zero(start.size());
+  if (!free.empty()) {
+    const auto more = static_cast<double>(now.values.size() - static_cast<Eigen::Index>(free.size()));
+    fit.variances(free) = inverseDiagonal(now.slopes(Eigen::all, free)) * (more > 0. ? fit.squares / more : 1.);
   }
   return fit;
 }

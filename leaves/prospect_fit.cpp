@@ -153,10 +153,13 @@ class Fitting {
       const auto c = static_cast<std::size_t>(sought_[p]);
       const auto i = static_cast<Eigen::Index>(p);
       each_[c].value = result.contents.*each_[c].content->value;
+      const double error = std::sqrt(fit.variances[i]);  // in ranges; not a number where nothing tells it
       if (fit.at_bound[p])
         each_[c].state = State::at_limit;
+      else if (!(error < 1.))
+        each_[c].state = State::unseen;
       else
-        each_[c].standard_error = std::sqrt(std::max(fit.covariance(i, i), 0.)) * range(c);
+        each_[c].standard_error = error * range(c);
     }
     result.each = each_;
     std::vector<LeafSides> sides(model_.size());

@@ -26,7 +26,7 @@ struct FittedContent {
   enum class State {
     found,     // with a standard error
     at_limit,  // would go on where its range (up to `usual_high`) ends
-    unseen,    // hardly changes these data: left at its start
+    unseen,    // hardly changes these data: left at its start; or not apart from others: its error is beyond its range
     held
   } state = State::found;
   double value = 0.;

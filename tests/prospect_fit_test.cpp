@@ -102,6 +102,23 @@ TEST(L7_FitProspect, TellsWhatItCannotSee) {
   }
 }
 
+// Check data of too few wavelengths, however often they come: what they leave open is told, and nothing is no number.
+TEST(L7_FitProspect, TellsWhatItCannotTellApart) {
+  MeasuredSpectrum twice;
+  for (int i = 0; i < 20; ++i) {
+    twice.wavelengths.push_back(i % 2 ? 550. : 800.);
+    twice.reflectance.push_back((i % 2 ? 0.12 : 0.45) + 1e-3 * (i % 3));
+  }
+  const ProspectFit fit = fitProspect(twice);
+  int unseen = 0;
+  for (const FittedContent& each : fit.each) {
+    EXPECT_TRUE(std::isfinite(each.value) && std::isfinite(each.standard_error)) << each.content->name;
+    unseen += each.state == State::unseen;
+  }
+  EXPECT_GE(unseen, 2);
+  EXPECT_LT(fit.rmse, 2e-3);
+}
+
 // Check a leaf that lies on the limits of its contents, with noise that draws beyond.
 TEST(L7_FitProspect, StaysWithinLimits) {
   const LeafContents truth{.structure = 1., .anthocyanins = 0., .brown_pigments = 0.};

@@ -16,9 +16,10 @@ struct BoundedFit {
   Eigen::VectorXd parameters;
   double squares = 0.;         // sum of the residuals' squares
   std::vector<char> at_bound;  // parameters that would go on where their range ends
-  // Of the parameters: variance of a residual times the inverse of slopes' product, over those that are not at a bound;
-  // 0 elsewhere. As if the data's errors were independent and alike.
-  Eigen::MatrixXd covariance;
+  // Of the parameters: the diagonal of the inverse of slopes' product times the variance of a residual, over those that
+  // are not at a bound; 0 of those at one, infinite where the data leave open how much is whose. As if the data's
+  // errors were independent and alike.
+  Eigen::VectorXd variances;
   int iterations = 0;
   bool converged = false;  // not: it took the most iterations
 };
