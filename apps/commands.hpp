@@ -10,6 +10,7 @@ void addValidate(CLI::App& app, RunOptions& options, int& status);
 void addSlab(CLI::App& app, RunOptions& options, int& status);
 void addTables(CLI::App& app, RunOptions& options, int& status);
 void addSlabTable(CLI::App& app, RunOptions& options, int& status);
+void addLeaf(CLI::App& app, RunOptions& options, int& status);
 void addPlant(CLI::App& app, RunOptions& options, int& status);
 void addVoxelize(CLI::App& app, RunOptions& options, int& status);
 void addTrace(CLI::App& app, RunOptions& options, int& status);

@@ -93,6 +93,7 @@ int run(int count, char** arguments, apps::Team* team) {
   apps::addSlab(app, options, status);
   apps::addTables(app, options, status);
   apps::addSlabTable(app, options, status);
+  apps::addLeaf(app, options, status);
   apps::addPlant(app, options, status);
   apps::addVoxelize(app, options, status);
   apps::addTrace(app, options, status);

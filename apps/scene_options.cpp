@@ -23,6 +23,19 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
                   "Share of light that leaves scatter, half of it reflected; overrides the scene's optics")
       ->check(numberIn(0., 1., "in [0, 1]"))
       ->group(group);
+  const auto leafOption = [&](const char* name, std::string& value, const char* about) {
+    return command.add_option(name, value, about)
+        ->group(group)
+        ->excludes("--albedo")
+        ->check([](const std::string& text) { return text.empty() ? "must not be empty" : std::string(); });
+  };
+  leafOption("--leaf-species", options.leaves.species,
+             "Measured species whose leaves all trees bear (see: sunfleck leaf --list); overrides the scene's optics");
+  leafOption("--leaf-prospect", options.leaves.prospect,
+             "Leaves of all trees by their contents, such as chlorophyll=40,water=0.01 (see: sunfleck leaf --help)");
+  leafOption("--leaf-bands", options.leaves.bands,
+             "What the three bands are of leaves told so, in nm, such as 620:680,520:570,450 (default: red, green and "
+             "blue of the eye)");
   command
       .add_option("--sun-zenith", options.sun_zenith_deg,
                   "Angle of the sun from overhead, in degrees; from 89.9 on it has set")
@@ -88,6 +101,25 @@ void placeSun(const SceneOptions& options, Sun& sun) {
   sun.azimuth = static_cast<float>(stands.azimuth);
 }
 
+// Reflectance and transmittance of all leaves; a gloss stays.
+void changeLeaves(const SceneOptions& options, Scene& scene) {
+  if (!options.leaves.bands.empty() && !options.leaves.given())
+    throw InvalidInput("--leaf-bands: must be with --leaf-species or --leaf-prospect");
+  if (!options.albedo && !options.leaves.given()) return;
+  BandOptics optics;
+  if (options.albedo)
+    optics.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
+  else
+    optics = leafOpticsOf(options.leaves);
+  for (TreeKind& kind : scene.kinds)
+    for (std::size_t band = 0; band < kBands; ++band) {
+      kind.leaf[band].reflectance = optics[band].reflectance;
+      kind.leaf[band].transmittance = optics[band].transmittance;
+    }
+  for (SceneMedium& medium : scene.media)
+    if (!medium.particles) medium.optics = optics;
+}
+
 }  // namespace
 
 Scene readScene(const SceneOptions& options, Media media, Treeless treeless) {
@@ -111,13 +143,7 @@ Scene readScene(const SceneOptions& options, Media media, Treeless treeless) {
   if (scene.sky.negative_values > 0)
     fmt::print(stderr, "sunfleck: {}: took {} negative values of the sky for 0\n", scene.sky.file,
                scene.sky.negative_values);
-  if (options.albedo)
-    for (TreeKind& kind : scene.kinds)
-      for (LeafOptics& leaf : kind.leaf) leaf.reflectance = leaf.transmittance = 0.5f * *options.albedo;
-  if (options.albedo)
-    for (SceneMedium& medium : scene.media)
-      if (!medium.particles)
-        medium.optics.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
+  changeLeaves(options, scene);
   if (options.sun_zenith_deg) scene.suns.front().zenith = radiansOf(*options.sun_zenith_deg);
   if (options.sun_azimuth_deg) scene.suns.front().azimuth = radiansOf(*options.sun_azimuth_deg);
   if (!options.date.empty()) placeSun(options, scene.suns.front());

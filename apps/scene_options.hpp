@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/leaf_options.hpp"
 #include "apps/run_options.hpp"
 #include "plants/import.hpp"
 #include "render/scene.hpp"
@@ -17,6 +18,7 @@ struct SceneOptions {
   float scale = 1.f;
   std::string up;
   std::optional<float> albedo;  // reflectance = transmittance = albedo / 2 in all bands
+  LeafOptions leaves;           // in place of it
   std::optional<double> sun_zenith_deg, sun_azimuth_deg;
   std::string date;                          // and time, as in 2003-10-17T12:30:30-07:00
   std::optional<std::vector<double>> place;  // latitude, longitude [degree]

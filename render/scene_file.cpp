@@ -12,6 +12,7 @@
 #include "plants/random_leaves.hpp"
 #include "plants/species.hpp"
 #include "plants/weber_penn.hpp"
+#include "render/detail/scene_leaf_file.hpp"
 #include "render/detail/scene_light_file.hpp"
 #include "render/detail/scene_media_file.hpp"
 #include "render/detail/scene_table.hpp"
@@ -62,33 +63,9 @@ std::vector<Placement> square(int side, glm::vec2 spacing, std::size_t kinds) {
   return trees;
 }
 
-// Optics of leaves and wood: those of the table, under these keys, or else those that the kind has already.
-void readOptics(TreeKind& kind, detail::SceneTable& leaf, const std::string& leaf_prefix, detail::SceneTable& wood,
-                const std::string& wood_prefix) {
-  glm::vec3 reflectance, transmittance, gloss;
-  for (int band = 0; band < kBands; ++band) {
-    reflectance[band] = kind.leaf[static_cast<std::size_t>(band)].reflectance;
-    transmittance[band] = kind.leaf[static_cast<std::size_t>(band)].transmittance;
-    gloss[band] = kind.leaf[static_cast<std::size_t>(band)].gloss;
-  }
-  reflectance = leaf.perBand(leaf_prefix + "reflectance", reflectance);
-  transmittance = leaf.perBand(leaf_prefix + "transmittance", transmittance);
-  gloss = leaf.perBand(leaf_prefix + "gloss", gloss);
-  const auto roughness = static_cast<float>(
-      leaf.number(leaf_prefix + "gloss_roughness", double{kind.leaf[0].gloss_roughness}, 0.05, 1., "in [0.05, 1]"));
-  for (int band = 0; band < kBands; ++band) {
-    LeafOptics& optics = kind.leaf[static_cast<std::size_t>(band)];
-    optics = {.reflectance = reflectance[band],
-              .transmittance = transmittance[band],
-              .gloss = gloss[band],
-              .gloss_roughness = roughness};
-    validate(optics);
-  }
-  kind.wood_reflectance = wood.perBand(wood_prefix + "reflectance", kind.wood_reflectance);
-}
-
 // `kind` has the scene's optics.
-void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const std::filesystem::path& folder) {
+void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const LightBands& bands,
+              const std::filesystem::path& folder) {
   if (tree.has("file") && tree.has("species"))
     throw InvalidInput(scene.origin + ": [tree] has both file and species: must be one of them");
   if (tree.has("file")) {
@@ -108,18 +85,19 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
              static_cast<std::uint64_t>(tree.count("seed", 1, std::numeric_limits<int>::max())));
   }
   kind.name = tree.text("name", kind.name);
-  readOptics(kind, tree, "leaf_", tree, "wood_");
+  detail::readOptics(kind, tree, "leaf_", tree, "wood_", bands);
   tree.done();
 }
 
-void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, const std::filesystem::path& file) {
+void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, const LightBands& bands,
+               const std::filesystem::path& file) {
   const toml::array* several = node ? node->as_array() : nullptr;  // [[tree]]
   const std::size_t count = several ? several->size() : 1;
   if (count == 0) throw InvalidInput(scene.origin + ": tree = []: must be a table [tree], or a [[tree]] for each kind");
   scene.kinds.assign(count, optics);
   for (std::size_t i = 0; i < count; ++i) {
     const toml::node* table = several ? several->get(i) : node;
-    readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), file.parent_path());
+    readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), bands, file.parent_path());
     for (std::size_t before = 0; before < i; ++before)
       if (scene.kinds[before].name == scene.kinds[i].name)
         throw InvalidInput(fmt::format("{}:{}: tree.name = \"{}\": must differ from that of the other kinds of trees",
@@ -261,12 +239,13 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   scene.origin = file.string();
   detail::SceneTable leaf = section("leaf"), wood = section("wood");
   TreeKind optics = kindWith(kPaperLeaf);
-  readOptics(optics, leaf, "", wood, "");
+  const LightBands bands = detail::readLightBands(leaf);
+  detail::readOptics(optics, leaf, "", wood, "", bands);
   for (const detail::SceneTable* read : {&leaf, &wood}) read->done();
   readGround(scene, section("ground"), file.parent_path());
-  if (const toml::node* media = table.get("medium")) detail::readMedia(scene, *media, optics.leaf, file);
+  if (const toml::node* media = table.get("medium")) detail::readMedia(scene, *media, optics.leaf, bands, file);
   if (scene.media.empty() || table.contains("tree")) {
-    readTrees(scene, table.get("tree"), optics, file);
+    readTrees(scene, table.get("tree"), optics, bands, file);
   } else {
     scene.kinds[0] = optics;
     scene.kinds[0].name = scene.kinds[0].source = "no tree";
@@ -376,6 +355,9 @@ seed = 1
 # name = "cherry"             # what positions call it; the species' or the file's name if not given
 # leaf_reflectance = 0.475    # its own optics, if not those of [leaf] and [wood]
 # leaf_transmittance = 0.475
+# leaf_species = "beech"      # or by what they are: see [leaf]
+# leaf_prospect = { chlorophyll = 40.0 }
+# leaf_slab = { absorption = [1.5, 0.4, 5.0], scattering = 10.0, thickness = 0.2 }
 # leaf_gloss = 0.0
 # leaf_gloss_roughness = 0.3
 # wood_reflectance = 0.3
@@ -396,6 +378,7 @@ seed = 1
                               # file's where it tells them
 # reflectance = 0.475         # of leaves; those of the file in the mean, or of [leaf], if not given
 # transmittance = 0.475
+# species = "beech"           # or by species, prospect or slab: see [leaf]
 # albedo = 1.0                # of particles, 0 to 1
 # asymmetry = 0.0             # of particles: mean cosine of scattering, -0.999 to 0.999
 # Several media, a [[medium]] for each, may fill the same space.
@@ -413,6 +396,12 @@ kind = "single"               # single | periodic | grid | positions | none: no 
 [leaf]                        # Lambertian on both sides; reflectance + transmittance at most 1
 reflectance = 0.475           # 0 to 1
 transmittance = 0.475         # 0 to 1
+# species = "beech"           # instead of these two, a measured species: see sunfleck leaf --list
+# prospect = { chlorophyll = 40.0, water = 0.01 }   # or a leaf by its contents: see sunfleck leaf --help; with a species,
+                              # what is different about it
+# bands_nm = [[620, 680], [520, 570], 450]   # what the three bands are, of species and contents alone: from and to, or one
+                              # wavelength, 400 to 2500; red, green and blue as the eye has them if not given
+# slab = { absorption = [1.5, 0.4, 5.0], scattering = 10.0, thickness = 0.2 }   # or even tissue: 1/mm, 1/mm and mm
 gloss = 0.0                   # intensity of a glossy reflection on both sides, 0 to 1; the two above are then shares of
                               # the light it lets in. trace and render take it, validate does not
 gloss_roughness = 0.3         # root mean square slope of its facets, 0.05 to 1; one number

@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "grid/isolated_read.hpp"
+#include "render/detail/scene_leaf_file.hpp"
 #include "scattering/leaf_angles.hpp"
 
 namespace sunfleck::detail {
 namespace {
 
-void readOptics(SceneMedium& medium, SceneTable& table, BandOptics optics) {
+void readOptics(SceneMedium& medium, SceneTable& table, BandOptics optics, const LightBands& bands) {
   if (medium.particles) {
     const glm::vec3 albedo = table.perBand("albedo", glm::vec3(1.f));
     for (std::size_t band = 0; band < kBands; ++band)
@@ -17,17 +18,10 @@ void readOptics(SceneMedium& medium, SceneTable& table, BandOptics optics) {
     return;
   }
   if (medium.grid) optics = medium.grid->meanOptics().value_or(optics);
-  glm::vec3 reflectance, transmittance;
-  for (int band = 0; band < kBands; ++band) {
-    reflectance[band] = optics[static_cast<std::size_t>(band)].reflectance;
-    transmittance[band] = optics[static_cast<std::size_t>(band)].transmittance;
-  }
-  reflectance = table.perBand("reflectance", reflectance);
-  transmittance = table.perBand("transmittance", transmittance);
-  for (int band = 0; band < kBands; ++band) {
-    medium.optics[static_cast<std::size_t>(band)] = {.reflectance = reflectance[band],
-                                                     .transmittance = transmittance[band]};
-    validate(medium.optics[static_cast<std::size_t>(band)]);
+  readLeafShares(table, "", bands, optics);
+  for (std::size_t band = 0; band < kBands; ++band) {
+    medium.optics[band] = {.reflectance = optics[band].reflectance, .transmittance = optics[band].transmittance};
+    validate(medium.optics[band]);
   }
   medium.angles = table.text("angles", "");
   if (!medium.angles.empty()) LeafAngles::named(medium.angles);
@@ -73,7 +67,8 @@ void readPlace(SceneMedium& medium, SceneTable& table, const std::filesystem::pa
 
 }  // namespace
 
-void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, const std::filesystem::path& file) {
+void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, const LightBands& bands,
+               const std::filesystem::path& file) {
   const toml::array* several = node.as_array();  // [[medium]]
   const std::size_t count = several ? several->size() : 1;
   if (count == 0)
@@ -86,7 +81,7 @@ void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, c
       throw InvalidInput(file.string() + ": medium.kind = \"" + kind + "\": must be leaves or particles");
     medium.particles = kind == "particles";
     readPlace(medium, table, file);
-    readOptics(medium, table, optics);
+    readOptics(medium, table, optics, bands);
     table.done();
   }
 }

@@ -10,6 +10,9 @@
 
 #include "core/detail/toml_file.hpp"
 #include "core/require.hpp"
+#include "leaves/light_bands.hpp"
+#include "leaves/measured_leaves.hpp"
+#include "leaves/prospect.hpp"
 #include "render/detail/scene_table.hpp"
 
 namespace sunfleck {
@@ -36,13 +39,16 @@ LeafOptics leafOf(double reflectance, double transmittance) {
   return leaf;
 }
 
-// The leaves as one of three ways tells them: albedo, pairs of reflectance and transmittance, bands of the scene.
+// The leaves as one of four ways tells them: albedo, pairs of reflectance and transmittance, species at wavelengths,
+// bands of the scene.
 std::vector<SweepOptics> readLeaves(SceneTable& table, const std::string& file) {
   const std::string share = "in [0, 1]";
   const bool albedo = table.has("albedo"), pairs = table.has("reflectance") || table.has("transmittance"),
-             bands = table.has("band");
-  if (albedo + pairs + bands > 1)
-    throw InvalidInput(file + ": [leaf]: must have one alone of albedo, reflectance with transmittance, and band");
+             bands = table.has("band"), species = table.has("species") || table.has("wavelength_nm");
+  if (albedo + pairs + bands + species > 1)
+    throw InvalidInput(file +
+                       ": [leaf]: must have one alone of albedo, reflectance with transmittance, species with "
+                       "wavelength_nm, and band");
   std::vector<SweepOptics> leaves;
   if (albedo)
     for (const double value : table.listed("albedo", 0., 1., share))
@@ -69,6 +75,17 @@ std::vector<SweepOptics> readLeaves(SceneTable& table, const std::string& file) 
       if (!seen.insert({up[i], through[i]}).second)
         throw InvalidInput(fmt::format("{}: [leaf]: reflectance {} with transmittance {}: must be there once", file,
                                        up[i], through[i]));
+    }
+  }
+  if (species) {
+    if (!table.has("species") || !table.has("wavelength_nm"))
+      throw InvalidInput(file + ": [leaf]: must have both species and wavelength_nm, or none");
+    const std::vector<double> wavelengths =
+        table.listed("wavelength_nm", kFirstWavelength, kLastWavelength, "in [400, 2500] nm");
+    for (const std::string& name : table.texts("species")) {
+      const LeafSpectrum spectrum = prospect(measuredLeaf(name, file + ": leaf.species").contents);
+      for (const double wavelength : wavelengths)
+        leaves.push_back({.leaf = leafOptics(meanIn(spectrum, {wavelength, wavelength}))});
     }
   }
   if (leaves.empty()) leaves.emplace_back();
@@ -159,10 +176,12 @@ models = ["mc"]                       # mc: Monte Carlo's own figures; ss, spp, 
 zenith_deg = [0, 30, 60]              # 0 to 89.9
 azimuth_deg = [0]                     # -360 to 360
 
-[leaf]                                # one of three, for leaves of all kinds; band 0 of the scene if not given
+[leaf]                                # one of four, for leaves of all kinds; band 0 of the scene if not given
 albedo = [0.1, 0.5, 0.95]             # half of it reflected, half passed on
 # reflectance = [0.10, 0.45]          # in pairs with ...
 # transmittance = [0.05, 0.40]
+# species = ["beech", "corn"]         # every species, see sunfleck leaf --list, at every one of ...
+# wavelength_nm = [550, 850]          # 400 to 2500
 # band = [0, 1, 2]                    # the scene's own in these bands, with its wood and ground
 
 [wood]

@@ -2,13 +2,15 @@
 
 #include <filesystem>
 
+#include "leaves/light_bands.hpp"
 #include "render/detail/scene_table.hpp"
 #include "render/scene.hpp"
 
 namespace sunfleck::detail {
 
 // Adds to a scene what a table [medium], or the tables [[medium]], of its file say. `optics`: of leaves, unless they
-// have their own. Throws InvalidInput as readScene() does.
-void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, const std::filesystem::path& file);
+// have their own, by species in these bands. Throws InvalidInput as readScene() does.
+void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, const LightBands& bands,
+               const std::filesystem::path& file);
 
 }  // namespace sunfleck::detail

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/require.hpp"
@@ -27,6 +28,9 @@ class SceneTable {
     if (node && !node->is_table()) refuse(*node, name_, "a table: [" + name_ + "]");
     if (node) table_ = node->as_table();
   }
+
+  const std::string& file() const { return file_; }
+  const std::string& name() const { return name_; }
 
   bool has(const std::string& key) const { return table_ && table_->contains(key); }
 
@@ -90,6 +94,24 @@ class SceneTable {
                               const std::string& rule) {
     const toml::node* node = take(key);
     return numbersOf(*node, key, count, low, high, rule);
+  }
+
+  // A table within this one.
+  SceneTable within(const std::string& key) { return SceneTable(take(key), file_, name_ + "." + key, help_); }
+
+  // A list of exactly `count` numbers or rising pairs of such, a number for a pair of the same twice.
+  std::vector<std::pair<double, double>> ranges(const std::string& key, std::size_t count, double low, double high,
+                                                const std::string& rule) {
+    const toml::node* node = take(key);
+    if (!node->is_array() || node->as_array()->size() != count) refuse(*node, key, rule);
+    std::vector<std::pair<double, double>> all;
+    for (const toml::node& item : *node->as_array()) {
+      const std::vector<double> limits = item.is_array() ? numbersOf(item, key, 2, low, high, rule)
+                                                         : std::vector(2, checked(item, key, low, high, rule));
+      if (limits[0] > limits[1]) refuse(item, key, rule);
+      all.emplace_back(limits[0], limits[1]);
+    }
+    return all;
   }
 
   bool isList(const std::string& key) const { return has(key) && table_->get(key)->is_array(); }

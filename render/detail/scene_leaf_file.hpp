@@ -1,0 +1,21 @@
+#pragma once
+
+#include "leaves/light_bands.hpp"
+#include "render/detail/scene_table.hpp"
+#include "render/scene.hpp"
+
+namespace sunfleck::detail {
+
+// What the bands of leaves that are told by species or contents are, by bands_nm of [leaf].
+LightBands readLightBands(SceneTable& leaf);
+
+// Reflectance and transmittance of leaves: those of the table, as numbers, by species and contents, or as a slab of
+// tissue, under keys with `prefix` before them, or else those that `optics` has already. Throws InvalidInput as
+// readScene() does, and on a table that tells them in two ways.
+void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, BandOptics& optics);
+
+// Optics of leaves and wood: those of the tables, or else those that the kind has already.
+void readOptics(TreeKind& kind, SceneTable& leaf, const std::string& leaf_prefix, SceneTable& wood,
+                const std::string& wood_prefix, const LightBands& bands);
+
+}  // namespace sunfleck::detail

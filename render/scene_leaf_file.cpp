@@ -1,0 +1,117 @@
+#include "render/detail/scene_leaf_file.hpp"
+
+#include "leaves/measured_leaves.hpp"
+#include "leaves/prospect.hpp"
+#include "leaves/slab_leaf.hpp"
+
+namespace sunfleck::detail {
+namespace {
+
+// Throws where the table tells its leaves in more than one way.
+void requireOneWay(const SceneTable& table, const std::string& prefix) {
+  const std::vector<std::vector<std::string>> ways{{"species", "prospect"}, {"slab"}, {"reflectance", "transmittance"}};
+  std::string first;
+  for (const std::vector<std::string>& way : ways) {
+    std::string found;
+    for (const std::string& key : way)
+      if (found.empty() && table.has(prefix + key)) found = prefix + key;
+    if (!first.empty() && !found.empty())
+      throw InvalidInput(
+          fmt::format("{}: [{}] has both {} and {}: must be one of them", table.file(), table.name(), first, found));
+    if (first.empty()) first = found;
+  }
+}
+
+BandOptics opticsBySlab(SceneTable& table, const std::string& key) {
+  SceneTable slab = table.within(key);
+  for (const char* part : {"absorption", "scattering", "thickness"})
+    if (!slab.has(part))
+      throw InvalidInput(fmt::format("{}: {} has no {}: must have absorption, scattering and thickness", slab.file(),
+                                     slab.name(), part));
+  const glm::vec3 absorption = slab.perBand("absorption", {}, 1e6), scattering = slab.perBand("scattering", {}, 1e6);
+  const double thickness = slab.number("thickness", 0., 0., 1000., "in [0, 1000] mm");
+  slab.done();
+  BandOptics optics;
+  for (int band = 0; band < kBands; ++band)
+    optics[static_cast<std::size_t>(band)] = leafOptics(
+        slabLeaf(
+            {.absorption = double{absorption[band]}, .scattering = double{scattering[band]}, .thickness = thickness})
+            .sides);
+  return optics;
+}
+
+BandOptics opticsByContents(SceneTable& table, const std::string& prefix, const LightBands& bands) {
+  const std::string species = prefix + "species", prospect_key = prefix + "prospect";
+  LeafContents leaf;
+  if (table.has(species))
+    leaf =
+        measuredLeaf(table.text(species, ""), fmt::format("{}: {}.{}", table.file(), table.name(), species)).contents;
+  if (table.has(prospect_key)) {
+    SceneTable contents = table.within(prospect_key);
+    std::vector<std::pair<std::string, double>> values;
+    for (const LeafContent& content : leafContents()) {
+      const std::string name(content.name);
+      const std::string rule =
+          fmt::format("in [{}, {}]{}{}", content.low, content.high, content.unit.empty() ? "" : " ", content.unit);
+      if (contents.has(name)) values.emplace_back(name, contents.number(name, 0., content.low, content.high, rule));
+    }
+    contents.done();
+    setContents(leaf, values, fmt::format("{}: {}.", table.file(), contents.name()));
+  }
+  return bandOptics(prospect(leaf), bands);
+}
+
+}  // namespace
+
+LightBands readLightBands(SceneTable& leaf) {
+  if (!leaf.has("bands_nm")) return std::nullopt;
+  const std::vector<std::pair<double, double>> read =
+      leaf.ranges("bands_nm", kBands, kFirstWavelength, kLastWavelength,
+                  "three bands: each [from, to], rising, or one wavelength, in [400, 2500] nm");
+  std::array<WavelengthBand, kBands> bands;
+  for (std::size_t band = 0; band < kBands; ++band) bands[band] = {read[band].first, read[band].second};
+  return bands;
+}
+
+void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, BandOptics& optics) {
+  requireOneWay(table, prefix);
+  const bool slab = table.has(prefix + "slab");
+  if (slab || table.has(prefix + "species") || table.has(prefix + "prospect")) {
+    const BandOptics leaf = slab ? opticsBySlab(table, prefix + "slab") : opticsByContents(table, prefix, bands);
+    for (std::size_t band = 0; band < kBands; ++band) {
+      optics[band].reflectance = leaf[band].reflectance;
+      optics[band].transmittance = leaf[band].transmittance;
+    }
+    return;
+  }
+  glm::vec3 reflectance, transmittance;
+  for (int band = 0; band < kBands; ++band) {
+    reflectance[band] = optics[static_cast<std::size_t>(band)].reflectance;
+    transmittance[band] = optics[static_cast<std::size_t>(band)].transmittance;
+  }
+  reflectance = table.perBand(prefix + "reflectance", reflectance);
+  transmittance = table.perBand(prefix + "transmittance", transmittance);
+  for (int band = 0; band < kBands; ++band) {
+    optics[static_cast<std::size_t>(band)].reflectance = reflectance[band];
+    optics[static_cast<std::size_t>(band)].transmittance = transmittance[band];
+  }
+}
+
+void readOptics(TreeKind& kind, SceneTable& leaf, const std::string& leaf_prefix, SceneTable& wood,
+                const std::string& wood_prefix, const LightBands& bands) {
+  readLeafShares(leaf, leaf_prefix, bands, kind.leaf);
+  glm::vec3 gloss;
+  for (int band = 0; band < kBands; ++band) gloss[band] = kind.leaf[static_cast<std::size_t>(band)].gloss;
+  gloss = leaf.perBand(leaf_prefix + "gloss", gloss);
+  const auto roughness = static_cast<float>(
+      leaf.number(leaf_prefix + "gloss_roughness", double{kind.leaf[0].gloss_roughness}, 0.05, 1., "in [0.05, 1]"));
+  for (int band = 0; band < kBands; ++band) {
+    LeafOptics& optics = kind.leaf[static_cast<std::size_t>(band)];
+    optics.gloss = gloss[band];
+    optics.gloss_roughness = roughness;
+    validate(optics);
+  }
+  kind.wood_reflectance = wood.perBand(wood_prefix + "reflectance", kind.wood_reflectance);
+}
+
+}  // namespace sunfleck::detail
