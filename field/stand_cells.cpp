@@ -10,6 +10,7 @@
 
 #include "core/available_memory.hpp"
 #include "core/require.hpp"
+#include "core/shared_progress.hpp"
 
 namespace sunfleck {
 namespace {
@@ -83,8 +84,9 @@ std::uint32_t cellNumber(const SweepGrid& grid, glm::ivec3 cell) {
 
 // (F28)
 StandMedium standMedium(std::span<const ClusteredTree> trees, const Bounds& box, float side,
-                        const std::optional<glm::vec2>& period) {
+                        const std::optional<glm::vec2>& period, const Progress& progress) {
   StandMedium made;
+  SharedProgress trees_done(progress, 2. * static_cast<double>(trees.size()));
   CellMedium& medium = made.cells;
   SweepGrid& grid = medium.grid;
   grid = gridOf(box, side, period);
@@ -95,6 +97,7 @@ StandMedium standMedium(std::span<const ClusteredTree> trees, const Bounds& box,
   tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t tree) {
     for (std::size_t i = 0; i < trees[tree].turned->centre.size(); ++i)
       std::atomic_ref(taken[cellOf(trees[tree], i)]).store(1, std::memory_order_relaxed);
+    trees_done.add();
   });
   grid.slot.assign(grid.count(), SweepGrid::kEmpty);
   for (std::uint32_t cell = 0; cell < grid.slot.size(); ++cell)
@@ -123,6 +126,7 @@ StandMedium standMedium(std::span<const ClusteredTree> trees, const Bounds& box,
         parts[kept++] = parts[i];
       }
     of_trees[number].assign(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(kept));
+    trees_done.add();
   });
   struct Numbered {
     Part part;
