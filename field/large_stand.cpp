@@ -69,6 +69,7 @@ void LargeStandField::makeKinds(const Progress& progress) {
     kind.elements = fieldElements(*meshes_[i], effort_.elements);
     kind.exchange = lineExchange(*meshes_[i], kind.elements, std::nullopt, effort_.exchange,
                                  partOf(progress, before, done / triangles));
+    requireGoOn(progress, done / triangles);
     kind.outside = outsideLines(kind.exchange);
     double from_leaves = 0., outside = 0.;
     for (std::size_t e = 0; e < kind.elements.size(); ++e) {
@@ -80,6 +81,7 @@ void LargeStandField::makeKinds(const Progress& progress) {
         outside += static_cast<double>(kind.exchange.first_outside[side + 1] - kind.exchange.first_outside[side]);
     }
     kind.near_return = nearReturn(kind.elements, kind.exchange, kind.materials, 2);
+    requireGoOn(progress, done / triangles);
     kind.escape = outside / std::max(from_leaves, 1.);
     kind.box = bounds(*meshes_[i]);
     kinds_[i] = std::move(made);
