@@ -8,8 +8,8 @@
 
 namespace sunfleck {
 
-// (F3) What a sun of irradiance 1 on a plane that faces it sends straight to each side of each element: each pixel of
-// its picture gives its light to the side that it shows. No light is lost.
+// (F3) What a sun of irradiance 1 on a plane that faces it sends straight to each side of each element: each row of
+// its picture gives its light to the sides that it shows. No light is lost.
 struct DirectLight {
   Direction along{0.f, 0.f, -1.f};
   std::vector<float> irradiance;  // of side 2 element (front) and 2 element + 1 (back) [1]

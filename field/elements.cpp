@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/morton_order.hpp"
+
 namespace sunfleck {
 namespace {
 
@@ -29,9 +31,10 @@ std::vector<Surface> surfacesOf(const TreeMesh& mesh, const std::vector<glm::uve
   return surfaces;
 }
 
-// Leaves that become single elements.
+// Leaves that become single elements, and where leaves are.
 struct WholeLeaves {
   std::vector<char> whole;
+  std::vector<glm::vec3> centres;  // of their boxes [m]
   float mean_free_path;
 };
 
@@ -49,11 +52,13 @@ WholeLeaves wholeLeaves(const TreeMesh& mesh, const std::vector<Surface>& surfac
     for (int corner = 0; corner < 3; ++corner) boxes[leaf].include(mesh.vertices[mesh.leaf_triangles[i][corner]]);
   }
   const glm::vec3 size = glm::max(leafBounds(mesh).size(), glm::vec3(1e-6f));
-  WholeLeaves result{std::vector<char>(mesh.leaf_count),
+  WholeLeaves result{std::vector<char>(mesh.leaf_count), std::vector<glm::vec3>(mesh.leaf_count),
                      static_cast<float>(2. * 0.5236 * double{size.x} * double{size.y} * double{size.z} / total)};
-  for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf)
+  for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
     result.whole[leaf] = glm::length(leaves[leaf].vector) >= rule.least_flatness * leaves[leaf].area &&
                          glm::length(boxes[leaf].size()) <= rule.largest_extent * result.mean_free_path;
+    result.centres[leaf] = boxes[leaf].centre();
+  }
   return result;
 }
 
@@ -107,13 +112,17 @@ FieldElements fieldElements(const TreeMesh& mesh, const ElementRule& rule) {
   const std::vector<Surface> surfaces = surfacesOf(mesh, mesh.leaf_triangles);
   const WholeLeaves leaves = wholeLeaves(mesh, surfaces, rule);
   elements.mean_free_path = leaves.mean_free_path;
-  constexpr std::uint32_t kNone = ~0u;
-  std::vector<std::uint32_t> of_leaf(mesh.leaf_count, kNone);
+  std::vector<std::uint32_t> next(mesh.leaf_count);  // element of each leaf's next triangle
+  for (std::size_t i = 0; i < surfaces.size(); ++i) ++next[mesh.leaf_of_triangle[i]];
+  for (const std::uint32_t leaf : mortonOrder(leaves.centres)) {
+    const std::uint32_t triangles = next[leaf], first = static_cast<std::uint32_t>(elements.size());
+    for (std::uint32_t i = 0; i < (leaves.whole[leaf] ? 1u : triangles); ++i) addElement(elements, leaf);
+    next[leaf] = first;
+  }
   double leaf_area = 0.;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const std::uint32_t leaf = mesh.leaf_of_triangle[i];
-    std::uint32_t element = of_leaf[leaf];
-    if (element == kNone || !leaves.whole[leaf]) of_leaf[leaf] = element = addElement(elements, leaf);
+    const std::uint32_t leaf = mesh.leaf_of_triangle[i], element = next[leaf];
+    if (!leaves.whole[leaf]) ++next[leaf];
     elements.of_leaf_triangle.push_back(element);
     add(elements, element, surfaces[i]);
     leaf_area += double{surfaces[i].area};

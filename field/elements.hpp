@@ -17,8 +17,8 @@ struct ElementRule {
 };
 
 // (F1) What exchanges light in a tree: pieces of its surface that are lit evenly on either side. A leaf, or its
-// triangles; of the wood, the triangles of a cell whose normals point alike. Leaves come first, in their order; then
-// wood.
+// triangles; of the wood, the triangles of a cell whose normals point alike. Leaves come first, near ones one after the
+// other; then wood.
 struct FieldElements {
   std::vector<float> area;                      // one-sided [m^2], > 0
   std::vector<glm::vec3> centre;                // of area [m]

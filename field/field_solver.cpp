@@ -149,13 +149,25 @@ class Solve {
     Lanes scale{};
     for (std::size_t lane = first; lane < last; ++lane) scale[lane] = scale_[lane];
     const std::span<const float> spread = lit ? lit->spread : sun.irradiance;
-    // What is sent by a place of a side, times pi.
-    const auto sent = [&](std::size_t side, LitPlaces::Lit how) {
-      const KindOptics& optics = optics_[kinds_[side / 2]];
-      Lanes light = optics.reflectance * spread[side] + optics.transmittance * spread[side ^ 1];
-      if (how == LitPlaces::kSameSide) light += optics.reflectance * lit->irradiance[side];
-      if (how == LitPlaces::kOtherSide) light += optics.transmittance * lit->irradiance[side ^ 1];
-      return light;
+    // What is sent by a place of each side, where light comes to the element as told, times pi.
+    constexpr std::size_t kWays = 3;
+    std::vector<Lanes> sent(kWays * ground());
+    overBlocks(count(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
+        const KindOptics& optics = optics_[kinds_[side / 2]];
+        Lanes* const of_side = &sent[kWays * side];
+        of_side[LitPlaces::kDark] =
+            scale * (optics.reflectance * spread[side] + optics.transmittance * spread[side ^ 1]);
+        if (!lit) continue;
+        const bool back = side % 2 == 1;
+        const Lanes reflected = scale * optics.reflectance * lit->irradiance[side],
+                    transmitted = scale * optics.transmittance * lit->irradiance[side ^ 1];
+        of_side[LitPlaces::kFront] = of_side[LitPlaces::kDark] + (back ? transmitted : reflected);
+        of_side[LitPlaces::kBack] = of_side[LitPlaces::kDark] + (back ? reflected : transmitted);
+      }
+    });
+    const auto sentAt = [&](std::size_t side, std::uint32_t crossing) {
+      return sent[kWays * side + (lit ? lit->at[crossing] : LitPlaces::kDark)];
     };
     const auto mean = [&](std::size_t side) {
       const KindOptics& optics = optics_[kinds_[side / 2]];
@@ -166,11 +178,11 @@ class Solve {
       for (std::size_t side = 2 * begin; side < 2 * end; ++side) {
         Lanes sum{};
         for (std::uint64_t i = exchange_.first[side]; i < exchange_.first[side + 1]; ++i)
-          sum += sent(exchange_.sees[i], lit ? lit->seen[i] : LitPlaces::kDark);
-        source_[side] += scale * perLine(side) * (returning_.gain[side] * sum + returning_.own[side] * mean(side));
+          sum += sentAt(exchange_.sees[i], exchange_.seen_at[i]);
+        source_[side] += perLine(side) * (returning_.gain[side] * sum + returning_.own[side] * (scale * mean(side)));
         for (std::uint64_t i = exchange_.first_outside[side]; i < exchange_.first_outside[side + 1]; ++i)
           addTo((exchange_.directions[exchange_.outside[i]].z > 0.f ? down : up)[block],
-                scale * sent(side, lit ? lit->open[i] : LitPlaces::kDark));
+                sentAt(side, exchange_.open_at[i]));
       }
     });
     for (std::size_t lane = first; lane < last; ++lane) {
@@ -264,6 +276,7 @@ class Solve {
         std::rotate(passed_steps_.begin(), passed_steps_.begin() + 1, passed_steps_.end());
         for (std::size_t j = 1; j < kHistory; ++j)
           for (std::size_t l = 1; l <= j; ++l) with_steps_[j - 1][l - 1] = with_steps_[j][l];
+        std::rotate(with_change_.begin(), with_change_.begin() + 1, with_change_.end());
         --kept;
       }
       change_steps_[kept].resize(sides);
@@ -272,7 +285,7 @@ class Solve {
     }
     struct Found {
       std::array<Sums, kHistory> with_change{};  // <step_j, change>
-      std::array<Sums, kHistory> with_newest{};  // <step_j, newest step>
+      Sums newest_square{};                      // <newest step, newest step>
       Sums squares{}, light_squares{}, down{};
     };
     std::vector<Found> found((count() + kBlock - 1) / kBlock);
@@ -286,11 +299,9 @@ class Solve {
       passed_[side] = passed;
       if (kept == 0) return;
       const Lanes weight = all(weight_[side]);
-      const Lanes weighted_change = weight * change, weighted_newest = weight * change_steps_[kept - 1][side];
-      for (std::size_t j = 0; j < kept; ++j) {
-        addTo(of_block.with_change[j], weighted_change * change_steps_[j][side]);
-        addTo(of_block.with_newest[j], weighted_newest * change_steps_[j][side]);
-      }
+      const Lanes weighted = weight * change, newest = change_steps_[kept - 1][side];
+      for (std::size_t j = 0; j < kept; ++j) addTo(of_block.with_change[j], weighted * change_steps_[j][side]);
+      addTo(of_block.newest_square, weight * newest * newest);
     };
     overBlocks(count(), [&](std::size_t block, std::size_t begin, std::size_t end) {
       Found& of_block = found[block];
@@ -324,10 +335,8 @@ class Solve {
       sum(total.squares, part.squares);
       sum(total.light_squares, part.light_squares);
       sum(total.down, part.down);
-      for (std::size_t j = 0; j < kHistory; ++j) {
-        sum(total.with_change[j], part.with_change[j]);
-        sum(total.with_newest[j], part.with_newest[j]);
-      }
+      for (std::size_t j = 0; j < kHistory; ++j) sum(total.with_change[j], part.with_change[j]);
+      sum(total.newest_square, part.newest_square);
     };
     for (const Found& part : found) addFound(part);
     Lanes down{};
@@ -339,8 +348,12 @@ class Solve {
     addTo(of_ground.squares, all(weight_[ground()]) * change_[ground()] * change_[ground()]);
     addTo(of_ground.light_squares, all(weight_[ground()]) * passed_[ground()] * passed_[ground()]);
     addFound(of_ground);
+    // The newest step leads from the change before to this one.
+    for (std::size_t j = 0; j + 1 < kept; ++j)
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        with_steps_[kept - 1][j][lane] = total.with_change[j][lane] - with_change_[j][lane];
+    if (kept > 0) with_steps_[kept - 1][kept - 1] = total.newest_square;
     with_change_ = total.with_change;
-    if (kept > 0) with_steps_[kept - 1] = total.with_newest;
     squares_ = total.squares;
     light_squares_ = total.light_squares;
   }

@@ -26,6 +26,7 @@ using detail::LineGrid;
 using detail::sideMet;
 
 constexpr double kMostLines = 16'777'216.;        // along an axis
+constexpr double kMostCrossings = 4e9;            // which have numbers of 32 bits
 constexpr std::size_t kChunks = 16;               // of axes, whose links are counted and written one after the other
 constexpr std::uint32_t kFirstOnLine = 1u << 31;  // marks a side, of which there are fewer
 
@@ -128,13 +129,14 @@ class AxesDone {
   std::mutex mutex_;
 };
 
-// A chunk's share of the links of each side, met and outside; then where its next link goes.
+// A chunk's share of the links of each side, met and outside, and of the crossings of each element; then where its next
+// one goes.
 struct ChunkLinks {
-  std::vector<std::uint32_t> met, outside;
+  std::vector<std::uint32_t> met, outside, crossings;
 };
 
-// Calls link(side, source, place of the source) and outside(side, direction, place of the side) for what each side sees
-// on the lines along an axis.
+// Calls link(side, source, i of the source) and outside(side, direction, i of the side) for what each side sees on the
+// lines along an axis, of its crossings i.
 template <typename Link, typename Outside>
 void forLinks(const AxisCrossings& axis, std::size_t number, std::size_t axes, const Link& link,
               const Outside& outside) {
@@ -143,13 +145,13 @@ void forLinks(const AxisCrossings& axis, std::size_t number, std::size_t axes, c
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t side = axis.sides[i] & ~kFirstOnLine;
     if (axis.sides[i] & kFirstOnLine)
-      outside(side, along, axis.places[i]);
+      outside(side, along, i);
     else
-      link(side, (axis.sides[i - 1] & ~kFirstOnLine) ^ 1u, axis.places[i - 1]);
+      link(side, (axis.sides[i - 1] & ~kFirstOnLine) ^ 1u, i - 1);
     if (i + 1 == count || axis.sides[i + 1] & kFirstOnLine)
-      outside(side ^ 1u, against, axis.places[i]);
+      outside(side ^ 1u, against, i);
     else
-      link(side ^ 1u, axis.sides[i + 1], axis.places[i + 1]);
+      link(side ^ 1u, axis.sides[i + 1], i + 1);
   }
 }
 
@@ -164,8 +166,9 @@ PlaceCode::PlaceCode(const TreeMesh& mesh, const std::optional<glm::vec2>& perio
 }
 
 std::size_t LineExchange::memoryBytes() const {
-  return 8 * (first.size() + first_outside.size()) + 4 * (sees.size() + lines.size() + below.size()) +
-         2 * outside.size() + sizeof(glm::u16vec3) * (seen_at.size() + open_at.size());
+  return 8 * (first.size() + first_outside.size()) +
+         4 * (sees.size() + seen_at.size() + open_at.size() + lines.size() + below.size() + first_crossing.size()) +
+         2 * outside.size() + sizeof(glm::u16vec3) * crossed_at.size();
 }
 
 // (F2)
@@ -188,12 +191,15 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   const double line_area = std::max(0.5 * area / double{effort.crossings}, across / kMostLines);
   // With a period as small as that there is one line for it.
   const double crossings = 0.5 * total / (period ? std::min(line_area, across) : line_area) * static_cast<double>(axes);
-  const double bytes = crossings * 56. + static_cast<double>(elements.size()) * (8. * kChunks + 40.) +
+  const double bytes = crossings * 56. + static_cast<double>(elements.size()) * (20. * kChunks + 60.) +
                        8. * across / std::min(line_area, across) * static_cast<double>(kChunks);
   if (const double available = availableMemory(); bytes > available)
     throw InvalidInput("the light field: must be of fewer leaves or lines: it would take " +
                        std::to_string(static_cast<long long>(bytes * 1e-6)) + " MB, and there are " +
                        std::to_string(static_cast<long long>(available * 1e-6)) + " MB");
+  if (crossings > kMostCrossings)
+    throw InvalidInput("the light field: must be of fewer leaves or lines: these would meet " +
+                       std::to_string(static_cast<long long>(crossings)) + " times, and 4000000000 times are the most");
 
   const std::vector<Direction> along = axesOf(effort.axes);
   const detail::StandSurfaces surfaces{&mesh, &elements, period};
@@ -211,6 +217,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
     ChunkLinks& links = chunks[chunk];
     links.met.resize(sides);
     links.outside.resize(sides);
+    links.crossings.resize(elements.size());
     const auto [begin, end] = axesOfChunk(chunk);
     for (std::size_t axis = begin; axis < end; ++axis) {
       // Offsets by the R2 sequence (Roberts 2018), so that no place is missed by all axes.
@@ -219,44 +226,55 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
       found[axis] = crossingsAlong(LineGrid(surfaces, along[axis], line_area, offset - glm::floor(offset)),
                                    exchange.places, work);
       forLinks(
-          found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t, const glm::u16vec3&) { ++links.met[side]; },
-          [&](std::uint32_t side, std::uint16_t, const glm::u16vec3&) { ++links.outside[side]; });
+          found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t, std::size_t) { ++links.met[side]; },
+          [&](std::uint32_t side, std::uint16_t, std::size_t) { ++links.outside[side]; });
+      for (const std::uint32_t side : found[axis].sides) ++links.crossings[(side & ~kFirstOnLine) / 2];
       if (!axes_done.oneMore()) return;
     }
   });
   axes_done.requireGoOn();
 
-  const auto starts = [&](std::vector<std::uint64_t>& first, std::vector<std::uint32_t> ChunkLinks::*counts) {
-    first.resize(sides + 1);
-    std::uint64_t sum = 0;
-    for (std::size_t side = 0; side < sides; ++side) {
-      first[side] = sum;
+  const auto starts = [&](auto& first, std::vector<std::uint32_t> ChunkLinks::*counts) {
+    using Number = std::decay_t<decltype(first[0])>;
+    const std::size_t members = (chunks.front().*counts).size();
+    first.resize(members + 1);
+    Number sum = 0;
+    for (std::size_t i = 0; i < members; ++i) {
+      first[i] = sum;
       std::uint32_t before = 0;
-      for (ChunkLinks& chunk : chunks) before += std::exchange((chunk.*counts)[side], before);
+      for (ChunkLinks& chunk : chunks) before += std::exchange((chunk.*counts)[i], before);
       sum += before;
     }
-    first[sides] = sum;
+    first[members] = sum;
     return sum;
   };
   exchange.sees.resize(starts(exchange.first, &ChunkLinks::met));
   exchange.outside.resize(starts(exchange.first_outside, &ChunkLinks::outside));
+  exchange.crossed_at.resize(starts(exchange.first_crossing, &ChunkLinks::crossings));
   exchange.seen_at.resize(exchange.sees.size());
   exchange.open_at.resize(exchange.outside.size());
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
     ChunkLinks& links = chunks[chunk];
+    std::vector<std::uint32_t> crossing;  // number of each of an axis
     const auto [begin, end] = axesOfChunk(chunk);
     for (std::size_t axis = begin; axis < end; ++axis) {
+      crossing.resize(found[axis].sides.size());
+      for (std::size_t i = 0; i < crossing.size(); ++i) {
+        const std::uint32_t element = (found[axis].sides[i] & ~kFirstOnLine) / 2;
+        crossing[i] = exchange.first_crossing[element] + links.crossings[element]++;
+        exchange.crossed_at[crossing[i]] = found[axis].places[i];
+      }
       forLinks(
           found[axis], axis, axes,
-          [&](std::uint32_t side, std::uint32_t source, const glm::u16vec3& place) {
+          [&](std::uint32_t side, std::uint32_t source, std::size_t i) {
             const std::uint64_t link = exchange.first[side] + links.met[side]++;
             exchange.sees[link] = source;
-            exchange.seen_at[link] = place;
+            exchange.seen_at[link] = crossing[i];
           },
-          [&](std::uint32_t side, std::uint16_t direction, const glm::u16vec3& place) {
+          [&](std::uint32_t side, std::uint16_t direction, std::size_t i) {
             const std::uint64_t link = exchange.first_outside[side] + links.outside[side]++;
             exchange.outside[link] = direction;
-            exchange.open_at[link] = place;
+            exchange.open_at[link] = crossing[i];
           });
       if (!axes_done.oneMore()) return;
     }
@@ -264,8 +282,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   axes_done.requireGoOn();
   exchange.lines.resize(elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i)
-    exchange.lines[i] = static_cast<std::uint32_t>(exchange.first[2 * i + 1] - exchange.first[2 * i] +
-                                                   exchange.first_outside[2 * i + 1] - exchange.first_outside[2 * i]);
+    exchange.lines[i] = exchange.first_crossing[i + 1] - exchange.first_crossing[i];
   exchange.directions = along;
   for (const Direction& axis : along) exchange.directions.push_back(-axis);
   exchange.below.resize(sides);

@@ -52,13 +52,16 @@ struct LineExchange {
   // something, sees[first[side]] up to sees[first[side + 1]].
   std::vector<std::uint64_t> first;
   std::vector<std::uint32_t> sees;
-  std::vector<glm::u16vec3> seen_at;  // where on the element that it sees, as sees; see `places`
-  std::vector<std::uint32_t> lines;   // of each element: those that cross it; as many come to either side
+  std::vector<std::uint32_t> seen_at;  // the crossing of the element that it sees there, as sees
+  std::vector<std::uint32_t> lines;    // of each element: those that cross it; as many come to either side
+  // Crossings of element i, first_crossing[i] up to first_crossing[i + 1], and where they are on it; see `places`.
+  std::vector<std::uint32_t> first_crossing;
+  std::vector<glm::u16vec3> crossed_at;
   // Of each side, the directions in which light comes to it from outside, as first and sees.
   std::vector<std::uint64_t> first_outside;
   std::vector<std::uint16_t> outside;
-  std::vector<glm::u16vec3> open_at;  // where on its own element, as outside
-  std::vector<std::uint32_t> below;   // of each side, those of them that rise: from the ground
+  std::vector<std::uint32_t> open_at;  // the crossing of its own element, as outside
+  std::vector<std::uint32_t> below;    // of each side, those of them that rise: from the ground
   PlaceCode places;
   std::vector<Direction> directions;      // in which light travels: along each axis, then against it
   std::vector<std::uint64_t> free_lines;  // with a period: of each axis, lines that meet nothing

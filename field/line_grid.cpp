@@ -1,7 +1,6 @@
 #include "field/detail/line_grid.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -32,20 +31,8 @@ glm::ivec2 wholePixels(const glm::dvec2& period, double wanted) {
 
 }  // namespace
 
-Crossing64 crossing64(float depth, std::uint32_t side) {
-  constexpr std::uint32_t kSign = 1u << 31;
-  const auto bits = std::bit_cast<std::uint32_t>(depth);
-  return Crossing64{bits & kSign ? ~bits : bits | kSign} << 32 | side;
-}
-
-float depthOf(Crossing64 crossing) {
-  constexpr std::uint32_t kSign = 1u << 31;
-  const auto bits = static_cast<std::uint32_t>(crossing >> 32);
-  return std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits);
-}
-
 // (F2)
-LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset)
+LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset, int finer)
     : surfaces_(surfaces) {
   const std::vector<glm::vec3>& vertices = surfaces.mesh->vertices;
   projected_.resize(vertices.size());
@@ -54,6 +41,7 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
     const glm::dvec2 period(*surfaces.period);
     const double rise = std::abs(double{along.z});
     size_ = wholePixels(period, period.x * period.y * rise / area);
+    size_.x *= finer;
     line_area_ = period.x * period.y * rise / (static_cast<double>(size_.x) * size_.y);
     const glm::vec2 scale = glm::vec2(glm::dvec2(size_) / period);
     right = scale.x * glm::vec3(1.f, 0.f, -along.x / along.z);
@@ -66,11 +54,11 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
   } else {
     const Axes axes = axesAlong(along);
     const auto scale = static_cast<float>(1. / std::sqrt(area));
-    right = scale * axes.right;
+    right = static_cast<float>(finer) * scale * axes.right;
     up = scale * axes.up;
     depth = axes.along;
-    line_area_ = area;
-    column_step_ = axes.right / scale;
+    line_area_ = area / finer;
+    column_step_ = axes.right / (static_cast<float>(finer) * scale);
     row_step_ = axes.up / scale;
     along_ = along;
   }
@@ -90,6 +78,7 @@ LineGrid::LineGrid(const StandSurfaces& surfaces, Direction along, double area, 
     pixels_.corner = glm::floor(glm::dvec2(box.low) - offset) + offset;
     size_ = glm::ivec2(glm::ceil(glm::dvec2(box.high) - pixels_.corner)) + 1;
   }
+  per_size_ = 1.f / glm::vec2(size_);
   shift_ = pixels_.corner;
   corner_ = (shift_.x + 0.5f) * column_step_ + (shift_.y + 0.5f) * row_step_;
   pixels_.pixels_per_metre = 1.;

@@ -13,9 +13,8 @@ namespace sunfleck {
 // the first time from where it falls. It leaves rather through the gap that it came by than an evenly lit leaf would
 // have it.
 struct LitPlaces {
-  enum Lit : std::uint8_t { kDark, kSameSide, kOtherSide };
-  std::vector<Lit> seen;  // of each of the exchange's links, on which side the place is lit that it sees
-  std::vector<Lit> open;  // and of each way outside, the place that it leaves from
+  enum Lit : std::uint8_t { kDark, kFront, kBack };
+  std::vector<Lit> at;  // of each crossing of the exchange's lines, the side that is lit there
   // Irradiance of each side where it is lit: as much as lets its lines carry away all light that arrives at it [1].
   std::vector<float> irradiance;
   // Of sides none of whose lit places a line meets: of the whole side [1].

@@ -31,14 +31,18 @@ struct Pairs {
   double near = 0., near_same = 0., distance = 0., squares = 0., same_distance = 0.;
 
   void add(std::span<const Line> lines, float per_metre) {
+    if (lines.empty()) return;
+    std::size_t meeting = 0;
+    for (const Line& line : lines) meeting += line.leaf != kOther;
+    // Each line is one of a pair with all others.
+    all += 0.5 * static_cast<double>(lines.size()) * static_cast<double>(lines.size() - 1);
+    meet += 0.5 * static_cast<double>(meeting) * static_cast<double>(lines.size() - 1);
     for (std::size_t a = 0; a < lines.size(); ++a)
       for (std::size_t b = 0; b < a; ++b) {
         const glm::vec3 apart = per_metre * (lines[a].place - lines[b].place);
         const float square = glm::dot(apart, apart);
         const bool same = lines[a].leaf == lines[b].leaf && lines[a].leaf != kOther;
-        all += 1.;
         all_same += same;
-        meet += 0.5 * ((lines[a].leaf != kOther) + (lines[b].leaf != kOther));
         if (square > kNear * kNear) continue;
         const double d = double{std::sqrt(square)};
         near += 1.;
@@ -89,46 +93,46 @@ std::vector<float> nearReturn(const FieldElements& elements, const LineExchange&
   const auto sides = static_cast<double>(2 * elements.leaf_elements);
   const double lines_wanted = std::max(kLeastLines, std::sqrt(2. * kPairs / sides));
   const double sides_wanted = 2. * kPairs / (lines_wanted * lines_wanted);
-  constexpr std::uint32_t kNone = ~0u;
-  std::vector<std::uint32_t> view_of(elements.leaf_elements, kNone);
-  std::vector<std::uint32_t> viewed;
-  for (std::size_t i = 0; i < elements.leaf_elements; ++i)
-    if (scattered(elements.centre[i]) * sides <= sides_wanted) {
-      view_of[i] = static_cast<std::uint32_t>(viewed.size());
-      viewed.push_back(static_cast<std::uint32_t>(i));
-    }
-  // What a place sees stands where it is seen from. Chunks are put together in their order, so that sums are too.
-  struct Found {
-    std::uint32_t view;
-    Line line;
+  struct View {
+    std::uint32_t element, first, end;  // and its places that are looked from
   };
-  std::array<std::vector<Found>, kChunks> found;
+  std::vector<View> views;
+  std::vector<glm::vec3> places;
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> place_at(exchange.crossed_at.size(), kNone);  // of each crossing
+  for (std::uint32_t element = 0; element < elements.leaf_elements; ++element) {
+    if (scattered(elements.centre[element]) * sides > sides_wanted) continue;
+    const auto first = static_cast<std::uint32_t>(places.size());
+    for (std::uint32_t i = exchange.first_crossing[element]; i < exchange.first_crossing[element + 1]; ++i) {
+      const glm::vec3 place = exchange.places.place(exchange.crossed_at[i]);
+      // Other bits than the element's.
+      if (scattered(place + 1.f) * exchange.lines[element] > lines_wanted) continue;
+      place_at[i] = static_cast<std::uint32_t>(places.size());
+      places.push_back(place);
+    }
+    views.push_back({element, first, static_cast<std::uint32_t>(places.size())});
+  }
+  // What a place sees, by front and back, stands where it is seen from.
+  std::vector<std::array<std::uint32_t, 2>> met(places.size(), {kOther, kOther});
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
-    const auto add = [&](std::size_t side, const glm::u16vec3& code, std::uint32_t leaf) {
-      const std::size_t element = side / 2;
-      if (element >= view_of.size() || view_of[element] == kNone) return;
-      const glm::vec3 place = exchange.places.place(code);
-      // Other bits than the side's.
-      if (scattered(place + 1.f) * exchange.lines[element] > lines_wanted) return;
-      found[chunk].push_back({static_cast<std::uint32_t>(2 * view_of[element] + side % 2), {place, leaf}});
-    };
     for (std::size_t side = chunk * exchange.sides() / kChunks; side < (chunk + 1) * exchange.sides() / kChunks;
          ++side) {
-      const std::uint32_t leaf = side / 2 < elements.leaf_elements ? elements.leaf[side / 2] : kOther;
+      if (side / 2 >= elements.leaf_elements) break;
       for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i)
-        add(exchange.sees[i], exchange.seen_at[i], leaf);
-      for (std::uint64_t i = exchange.first_outside[side]; i < exchange.first_outside[side + 1]; ++i)
-        add(side, exchange.open_at[i], kOther);
+        if (const std::uint32_t place = place_at[exchange.seen_at[i]]; place != kNone)
+          met[place][exchange.sees[i] % 2] = elements.leaf[side / 2];
     }
   });
-  std::vector<std::vector<Line>> views(2 * viewed.size());
-  for (const std::vector<Found>& of_chunk : found)
-    for (const Found& one : of_chunk) views[one.view].push_back(one.line);
   std::vector<std::array<Pairs, kChunks>> parts(count);
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
-    for (std::size_t i = chunk * views.size() / kChunks; i < (chunk + 1) * views.size() / kChunks; ++i) {
-      const std::uint32_t element = viewed[i / 2];
-      parts[kinds[element]][chunk].add(views[i], 1.f / std::sqrt(elements.area[element]));
+    std::vector<Line> lines;
+    for (std::size_t v = chunk * views.size() / kChunks; v < (chunk + 1) * views.size() / kChunks; ++v) {
+      const View& view = views[v];
+      for (std::size_t back = 0; back < 2; ++back) {
+        lines.clear();
+        for (std::uint32_t i = view.first; i < view.end; ++i) lines.push_back({places[i], met[i][back]});
+        parts[kinds[view.element]][chunk].add(lines, 1.f / std::sqrt(elements.area[view.element]));
+      }
     }
   });
   std::vector<float> shares;

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace sunfleck {
 namespace {
@@ -12,8 +13,13 @@ glm::vec3 turned(const glm::vec3& vector, float cosine, float sine) {
   return {cosine * vector.x - sine * vector.y, sine * vector.x + cosine * vector.y, vector.z};
 }
 
-void append(std::vector<glm::uvec3>& to, const std::vector<glm::uvec3>& triangles, std::uint32_t first_vertex) {
-  for (const glm::uvec3& triangle : triangles) to.push_back(triangle + first_vertex);
+// Triangles in the order of their elements: near ones are worked on one after the other.
+std::vector<std::uint32_t> byElement(const std::vector<std::uint32_t>& of_triangle, std::size_t elements) {
+  std::vector<std::uint32_t> next(elements + 1), order(of_triangle.size());
+  for (const std::uint32_t element : of_triangle) ++next[element + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[next[of_triangle[i]]++] = i;
+  return order;
 }
 
 }  // namespace
@@ -54,14 +60,14 @@ StandElements standElements(std::span<const std::shared_ptr<const TreeMesh>> kin
     first_vertex.push_back(static_cast<std::uint32_t>(all_mesh.vertices.size()));
     for (const glm::vec3& vertex : mesh.vertices)
       all_mesh.vertices.push_back(tree.position + turned(vertex, cosine, sine));
-    append(all_mesh.leaf_triangles, mesh.leaf_triangles, first_vertex.back());
     const auto first = static_cast<std::uint32_t>(all_elements.size());
     all.first_element.push_back(first);
-    for (const std::uint32_t element : elements.of_leaf_triangle)
-      all_elements.of_leaf_triangle.push_back(first + element);
+    for (const std::uint32_t i : byElement(elements.of_leaf_triangle, elements.size())) {
+      all_mesh.leaf_triangles.push_back(mesh.leaf_triangles[i] + first_vertex.back());
+      all_mesh.leaf_of_triangle.push_back(all_mesh.leaf_count + mesh.leaf_of_triangle[i]);
+      all_elements.of_leaf_triangle.push_back(first + elements.of_leaf_triangle[i]);
+    }
     take(tree, 0, elements.leaf_elements, 2 * tree.kind);
-    for (const std::uint32_t leaf : mesh.leaf_of_triangle)
-      all_mesh.leaf_of_triangle.push_back(all_mesh.leaf_count + leaf);
     all.first_leaf.push_back(all_mesh.leaf_count);
     all_mesh.leaf_count += mesh.leaf_count;
   }
@@ -71,11 +77,12 @@ StandElements standElements(std::span<const std::shared_ptr<const TreeMesh>> kin
   for (std::size_t i = 0; i < stand.trees.size(); ++i) {
     const Placement& tree = stand.trees[i];
     const FieldElements& elements = of_kinds[tree.kind];
-    append(all_mesh.wood_triangles, kinds[tree.kind]->wood_triangles, first_vertex[i]);
     all.first_wood.push_back(all_elements.size());
     const std::size_t first = all_elements.size() - elements.leaf_elements;  // wraps below 0 and back
-    for (const std::uint32_t element : elements.of_wood_triangle)
-      all_elements.of_wood_triangle.push_back(static_cast<std::uint32_t>(first + element));
+    for (const std::uint32_t triangle : byElement(elements.of_wood_triangle, elements.size())) {
+      all_mesh.wood_triangles.push_back(kinds[tree.kind]->wood_triangles[triangle] + first_vertex[i]);
+      all_elements.of_wood_triangle.push_back(static_cast<std::uint32_t>(first + elements.of_wood_triangle[triangle]));
+    }
     take(tree, elements.leaf_elements, elements.size(), 2 * tree.kind + 1);
   }
   all.first_wood.push_back(all_elements.size());

@@ -12,7 +12,7 @@
 namespace sunfleck {
 
 // (F1) The elements of all trees of a stand, as they stand: those of the leaves, tree after tree, come before those of
-// the wood.
+// the wood. The mesh's triangles stand in the order of their elements.
 struct StandElements {
   TreeMesh mesh;                     // of all trees
   FieldElements elements;            // of it

@@ -31,8 +31,8 @@ TreeMesh halfShaded() {
 
 }  // namespace
 
-// Check that places of a leaf are lit where no other leaf is above, that they are told in pairs, on the side that is
-// looked at or the other, and that their light is all that arrives.
+// Check that places of a leaf are lit where no other leaf is above, that they are told on the front, once for
+// both ends of lines there, and that their light is all that arrives.
 TEST(F6_LitPlaces, LieWhereNoShadowFalls) {
   const TreeMesh mesh = halfShaded();
   const FieldElements elements = fieldElements(mesh, kWhole);
@@ -40,29 +40,36 @@ TEST(F6_LitPlaces, LieWhereNoShadowFalls) {
   const SunPicture picture(mesh, elements, {}, kDown, {.pixels = 10'000.f});
   const DirectLight direct = directLight(picture, elements, false);
   const LitPlaces lit = litPlaces(picture, direct, exchange);
+  const auto half_shaded = static_cast<std::uint32_t>(std::ranges::find(elements.leaf, 0u) - elements.leaf.begin());
   constexpr float kPixel = 0.03f;  // larger than that of the picture, and than a place's rounding
   std::size_t bright = 0, dark = 0;
   double carried = 0.;
-  const auto look = [&](std::uint32_t side, const glm::u16vec3& code, LitPlaces::Lit is) {
-    if (side / 2 != 0) return;
-    if (is != LitPlaces::kDark) carried += double{lit.irradiance[0]};
-    const glm::vec3 place = exchange.places.place(code);
+  std::vector<int> ends(exchange.crossed_at.size());  // of lines at each crossing
+  const auto look = [&](std::uint32_t side, std::uint32_t crossing) {
+    EXPECT_GE(crossing, exchange.first_crossing[side / 2]);
+    EXPECT_LT(crossing, exchange.first_crossing[side / 2 + 1]);
+    ++ends[crossing];
+    if (side / 2 != half_shaded) return;
+    const LitPlaces::Lit is = lit.at[crossing];
+    if (is != LitPlaces::kDark) carried += double{lit.irradiance[2 * half_shaded]};
+    const glm::vec3 place = exchange.places.place(exchange.crossed_at[crossing]);
     const float x = place.x, y = place.y;
     if (std::abs(x) < kPixel || std::abs(x) > 1.f - kPixel || std::abs(y) > 1.f - kPixel) return;
-    EXPECT_EQ(is, x < 0.f ? LitPlaces::kDark : side == 0 ? LitPlaces::kSameSide : LitPlaces::kOtherSide) << x;
+    EXPECT_EQ(is, x < 0.f ? LitPlaces::kDark : LitPlaces::kFront) << x;
     ++(x > 0.f ? bright : dark);
   };
-  for (std::size_t i = 0; i < exchange.sees.size(); ++i) look(exchange.sees[i], exchange.seen_at[i], lit.seen[i]);
-  for (std::size_t side = 0; side < exchange.sides(); ++side)
+  for (std::size_t i = 0; i < exchange.sees.size(); ++i) look(exchange.sees[i], exchange.seen_at[i]);
+  for (std::uint32_t side = 0; side < exchange.sides(); ++side)
     for (std::uint64_t i = exchange.first_outside[side]; i < exchange.first_outside[side + 1]; ++i)
-      look(static_cast<std::uint32_t>(side), exchange.open_at[i], lit.open[i]);
+      look(side, exchange.open_at[i]);
+  for (const int count : ends) EXPECT_EQ(count, 2);  // on either side of the element
   EXPECT_GT(bright, 5000u);
   EXPECT_GT(dark, 5000u);
   // Each line has two ends here; sums of thousands of floats.
-  const double all = 2. * exchange.lines[0] * double{direct.irradiance[0]};
+  const double all = 2. * exchange.lines[half_shaded] * double{direct.irradiance[2 * half_shaded]};
   EXPECT_NEAR(carried, all, 1e-4 * all);
-  EXPECT_NEAR(direct.irradiance[0], 0.5, 0.01);  // half of it, to a row of pixels
-  EXPECT_NEAR(lit.irradiance[0], 1., 0.02);      // the sun's where it shines, as evenly as lines fall
+  EXPECT_NEAR(direct.irradiance[2 * half_shaded], 0.5, 0.01);  // half of it, to a row of pixels
+  EXPECT_NEAR(lit.irradiance[2 * half_shaded], 1., 0.02);      // the sun's where it shines, as evenly as lines fall
 }
 
 // Check the light of leaves beside the lit and the dark part of another, single elements all of them, against Monte

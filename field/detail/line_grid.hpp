@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -24,8 +25,16 @@ using Crossing64 = std::uint64_t;
 inline std::uint32_t sideMet(Crossing64 crossing) {
   return static_cast<std::uint32_t>(crossing);
 }
-Crossing64 crossing64(float depth, std::uint32_t side);
-float depthOf(Crossing64 crossing);
+inline Crossing64 crossing64(float depth, std::uint32_t side) {
+  constexpr std::uint32_t kSign = 1u << 31;
+  const auto bits = std::bit_cast<std::uint32_t>(depth);
+  return Crossing64{bits & kSign ? ~bits : bits | kSign} << 32 | side;
+}
+inline float depthOf(Crossing64 crossing) {
+  constexpr std::uint32_t kSign = 1u << 31;
+  const auto bits = static_cast<std::uint32_t>(crossing >> 32);
+  return std::bit_cast<float>(bits & kSign ? bits ^ kSign : ~bits);
+}
 
 // Sides of a stand's elements.
 struct StandSurfaces {
@@ -38,9 +47,12 @@ struct StandSurfaces {
 // one, they cover a period as the direction sees it from the ground, and lines repeat as the stand does.
 class LineGrid {
  public:
-  //   area    that each line stands for, across it [m^2]; with a period as near as whole numbers of pixels come to it
+  //   area    that `finer` lines of a row stand for, across them [m^2]; with a period as near as whole numbers of
+  //   pixels
+  //           come to it
   //   offset  of the pixels' grid, in pixels [1], 0 .. 1
-  LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset);
+  //   finer   pixels' height by their width [1]
+  LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset, int finer = 1);
 
   double lineArea() const { return line_area_; }  // [m^2]
   std::size_t lines() const { return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y); }
@@ -50,20 +62,21 @@ class LineGrid {
   glm::vec3 place(int column, int row, float depth) const {
     return corner_ + static_cast<float>(column) * column_step_ + static_cast<float>(row) * row_step_ + depth * along_;
   }
-  // The line whose pixel a place lies in; lines() if in none. And the place's depth, as of crossings [m].
-  std::size_t lineAt(const glm::vec3& place, float& depth) const {
+  // The column and row of the pixel that a place lies in; column -1 if in none. And the place's depth, as of crossings
+  // [m].
+  glm::ivec2 pixelAt(const glm::vec3& place, float& depth) const {
     glm::vec2 pixel(glm::dot(place, right_) - shift_.x, glm::dot(place, up_) - shift_.y);
     depth = glm::dot(place, depth_);
     if (surfaces_.period) {
-      const glm::vec2 periods = pixel / glm::vec2(size_);
+      const glm::vec2 periods = pixel * per_size_;
       // Rounds down, without the call that std::floor is on old processors.
       const glm::vec2 whole(static_cast<float>(static_cast<int>(periods.x) - (periods.x < 0.f)),
                             static_cast<float>(static_cast<int>(periods.y) - (periods.y < 0.f)));
       pixel -= whole * glm::vec2(size_);
     }
-    const int column = static_cast<int>(pixel.x), row = static_cast<int>(pixel.y);
-    if (pixel.x < 0.f || pixel.y < 0.f || column >= size_.x || row >= size_.y) return lines();
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(size_.x) + static_cast<std::size_t>(column);
+    const glm::ivec2 whole(pixel);
+    if (pixel.x < 0.f || pixel.y < 0.f || whole.x >= size_.x || whole.y >= size_.y) return {-1, 0};
+    return whole;
   }
 
   // Triangles of the stand: those of leaves, then those of wood.
@@ -71,11 +84,25 @@ class LineGrid {
   // Calls put(line, crossing) for each crossing of triangles [begin, end).
   template <typename Put>
   void cross(std::size_t begin, std::size_t end, std::vector<Span>& work, const Put& put) const {
+    const auto columns = static_cast<std::uint32_t>(size_.x);
+    forSpans(begin, end, work, [&](const Span& span, std::uint32_t side) {
+      std::uint32_t column = span.column;
+      for (std::uint32_t i = 0; i < span.length; ++i) {
+        put(std::size_t{span.row} * columns + column,
+            crossing64(span.depth + static_cast<float>(i) * span.slope, side));
+        if (++column == columns) column = 0;
+      }
+    });
+  }
+  // Calls put(span, side) for each row of pixels that triangles [begin, end) cover, with the side of an element that
+  // lines come to. With a period a span goes round where it passes the end of its row.
+  template <typename Put>
+  void forSpans(std::size_t begin, std::size_t end, std::vector<Span>& work, const Put& put) const {
     const std::size_t leaves = surfaces_.mesh->leaf_triangles.size();
-    crossOf(surfaces_.mesh->leaf_triangles, surfaces_.elements->of_leaf_triangle, std::min(begin, leaves),
-            std::min(end, leaves), work, put);
-    crossOf(surfaces_.mesh->wood_triangles, surfaces_.elements->of_wood_triangle, std::max(begin, leaves) - leaves,
-            std::max(end, leaves) - leaves, work, put);
+    forSpansOf(surfaces_.mesh->leaf_triangles, surfaces_.elements->of_leaf_triangle, std::min(begin, leaves),
+               std::min(end, leaves), work, put);
+    forSpansOf(surfaces_.mesh->wood_triangles, surfaces_.elements->of_wood_triangle, std::max(begin, leaves) - leaves,
+               std::max(end, leaves) - leaves, work, put);
   }
 
  private:
@@ -86,23 +113,20 @@ class LineGrid {
   }
 
   template <typename Put>
-  void crossOf(const std::vector<glm::uvec3>& triangles, const std::vector<std::uint32_t>& elements, std::size_t begin,
-               std::size_t end, std::vector<Span>& work, const Put& put) const {
+  void forSpansOf(const std::vector<glm::uvec3>& triangles, const std::vector<std::uint32_t>& elements,
+                  std::size_t begin, std::size_t end, std::vector<Span>& work, const Put& put) const {
     constexpr std::size_t kRoom = 4096;
     work.resize(std::max(kRoom, static_cast<std::size_t>(pixels_.rows)));
     while (begin < end) {
       const Scanned scanned =
           scan_(pixels_, projected_.data(), &triangles[begin], end - begin, work.data(), work.size());
-      for (const Span& span : std::span(work).first(scanned.spans)) {
+      for (Span span : std::span(work).first(scanned.spans)) {
         const std::size_t triangle = begin + span.triangle;
-        const std::uint32_t side = 2 * elements[triangle] + !fromFront(triangles[triangle]);
-        const auto row = static_cast<std::size_t>(span.row) % static_cast<std::size_t>(size_.y);
-        auto column = span.column % static_cast<std::uint32_t>(size_.x);
-        for (std::uint32_t i = 0; i < span.length; ++i) {
-          put(row * static_cast<std::size_t>(size_.x) + column,
-              crossing64(span.depth + static_cast<float>(i) * span.slope, side));
-          if (++column == static_cast<std::uint32_t>(size_.x)) column = 0;
+        if (surfaces_.period) {  // of which the stand's pixels may go round several; divisions take long
+          span.row %= static_cast<std::uint32_t>(size_.y);
+          span.column %= static_cast<std::uint32_t>(size_.x);
         }
+        put(span, 2 * elements[triangle] + !fromFront(triangles[triangle]));
       }
       begin += scanned.triangles;
     }
@@ -113,6 +137,7 @@ class LineGrid {
   bool mirrored_ = false;             // whether right, up and depth are left-handed
   PixelGrid pixels_{};                // of the stand; with a period they may go round it several times
   glm::ivec2 size_{0};
+  glm::vec2 per_size_{0.f};  // 1 / size_
   double line_area_ = 0.;
   glm::vec3 right_{}, up_{}, depth_{};               // which give a place's pixel, but for shift_, and depth
   glm::vec2 shift_{};                                // [pixel]

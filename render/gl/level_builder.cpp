@@ -2,27 +2,13 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
-#include <numeric>
+
+#include "core/morton_order.hpp"
 
 namespace sunfleck::gl::detail {
 namespace {
 
 constexpr std::size_t kClusterTriangles = 64;
-
-// The bits of ten, with two zeros between each.
-std::uint32_t apart(std::uint32_t x) {
-  x = (x | x << 16) & 0x030000ffu;
-  x = (x | x << 8) & 0x0300f00fu;
-  x = (x | x << 4) & 0x030c30c3u;
-  return (x | x << 2) & 0x09249249u;
-}
-
-// Place of a point of the box on Morton's curve, which keeps near ones together.
-std::uint32_t mortonCode(const Bounds& box, const glm::vec3& point) {
-  const glm::vec3 part = (point - box.low) / glm::max(box.size(), glm::vec3(1e-6f));
-  const glm::uvec3 cell(glm::clamp(part * 1023.f, 0.f, 1023.f));
-  return apart(cell.x) | apart(cell.y) << 1 | apart(cell.z) << 2;
-}
 
 TriangleData dataOf(const LevelTriangle& triangle) {
   const glm::dvec3 a = triangle.corners[0], b = triangle.corners[1], c = triangle.corners[2];
@@ -68,11 +54,10 @@ void LevelBuilder::add(std::vector<Level>& into, const std::vector<LevelTriangle
   for (const LevelTriangle& triangle : triangles)
     for (const glm::vec3& corner : triangle.corners) box.include(corner);
   levels_.box.include(box);
-  std::vector<std::uint32_t> order(count), code(count);
-  std::iota(order.begin(), order.end(), 0u);
-  for (std::uint32_t i = 0; i < count; ++i) code[i] = mortonCode(box, triangles[i].corners[0]);
-  std::ranges::sort(order,
-                    [&](std::uint32_t a, std::uint32_t b) { return code[a] != code[b] ? code[a] < code[b] : a < b; });
+  std::vector<glm::vec3> places;
+  places.reserve(count);
+  for (const LevelTriangle& triangle : triangles) places.push_back(triangle.corners[0]);
+  const std::vector<std::uint32_t> order = mortonOrder(places);
   Level& level = into.emplace_back();
   level.piece_area = piece_area;
   for (std::size_t i = 0; i < count; ++i) {
