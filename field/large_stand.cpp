@@ -202,11 +202,16 @@ void LargeStandField::requireMemory(const FieldLighting& lighting, std::span<con
     const double sides =
         2. * static_cast<double>(known ? kinds_[kind]->elements.size() : std::size_t{meshes_[kind]->leaf_count});
     bytes += sizeof(LeafLight) * static_cast<double>(meshes_[kind]->leaf_count) + 4. * sides * suns;
-    light += 4. * bands * sides;
+    light += 8. * bands * sides;
   }
   bytes += std::min(light, detail::kLargeStandLight);
   if (cells_) {
     bytes += cells_->memoryBytes(1);
+    const double line_area = lineArea();
+    for (const std::size_t tree : seen) {
+      const glm::dvec3 size(kinds_[stand_.trees[tree].kind]->box.size());
+      bytes += suns / 8. * (size.x * size.y + size.y * size.z + size.x * size.z) / line_area;
+    }
     for (const std::size_t tree : far)
       bytes += 2. * sizeof(glm::vec3) * static_cast<double>(kinds_[stand_.trees[tree].kind]->groups.count);
     for (const auto& kind : kinds_)
