@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 #include <stdexcept>
 
@@ -19,27 +18,35 @@ class SharedProgress {
   // where the work is not to go on.
   void add(double parts = 1.) {
     if (!progress_) return;
-    done_.fetch_add(parts, std::memory_order_relaxed);
-    // Whoever finds another thread asking leaves it to that one.
-    if (const std::unique_lock lock(mutex_, std::try_to_lock); lock && goes_on_)
-      goes_on_ = progress_(std::min(done_ / parts_, 1.));
-    if (!goes_on_) throw std::runtime_error("interrupted");
+    const std::lock_guard lock(mutex_);
+    done_ += parts;
+    tell();
   }
 
-  // For work that is told to go on by a Progress of its own: asks, and tells nothing.
+  // Asks, and tells of nothing new; nor does it wait for another thread that is asking. Throws as add() does.
+  void ask() {
+    if (!progress_) return;
+    if (const std::unique_lock lock(mutex_, std::try_to_lock); lock) tell();
+  }
+
+  // For work that asks a Progress of its own.
   Progress asking() {
     if (!progress_) return {};
     return [this](double) {
-      add(0.);
+      ask();
       return true;
     };
   }
 
  private:
+  void tell() {
+    goes_on_ = goes_on_ && progress_(std::min(done_ / parts_, 1.));
+    if (!goes_on_) throw std::runtime_error("interrupted");
+  }
+
   const Progress& progress_;
-  double parts_;
-  std::atomic<double> done_ = 0.;
-  std::atomic<bool> goes_on_ = true;
+  double parts_, done_ = 0.;
+  bool goes_on_ = true;
   std::mutex mutex_;
 };
 

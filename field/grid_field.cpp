@@ -249,7 +249,7 @@ void GridField::step(State& state, const GridLight& light, SharedProgress& progr
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slots, 16), [&](const auto& range) {
     std::vector<float> of_cell(2 * pairs * stride);
     for (std::size_t slot = range.begin(); slot < range.end(); ++slot) {
-      if (slot % kAsk == 0) progress.add(0.);
+      if (slot % kAsk == 0) progress.ask();
       const auto [begin, end] = pieces(slot);
       exchange.send(rows, elements, begin, end, clumping_[slot] / medium_.grid.volume(), state.radiance.data(), bands,
                     of_cell.data());
@@ -261,7 +261,7 @@ void GridField::step(State& state, const GridLight& light, SharedProgress& progr
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slots, 16), [&](const auto& range) {
     std::vector<float> met(2 * pairs * stride);
     for (std::size_t slot = range.begin(); slot < range.end(); ++slot) {
-      if (slot % kAsk == 0) progress.add(0.);
+      if (slot % kAsk == 0) progress.ask();
       // Of what leaves meet, the share 1 - Omega is from leaves of their own clump.
       const float open = clumping_[slot];
       for (std::size_t row = 0; row < 2 * pairs; ++row) {

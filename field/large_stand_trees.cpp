@@ -160,11 +160,11 @@ std::vector<std::vector<float>> LargeStandField::lightAtWalls(std::span<const st
   tbb::parallel_for(std::size_t{0}, now.size(), [&](std::size_t i) {
     trees[i] = litTree(now[i]);
     around[i].assign(kinds_[stand_.trees[now[i]].kind]->elements.size() * 2 * bands, 0.f);
-    progress.add(0.);
+    progress.ask();
   });
   const float pixel = kWallPixel * std::min({grid.side.x, grid.side.y, grid.side.z});
   for (std::uint32_t number = 0; number < directions.size(); ++number) {
-    progress.add(0.);
+    progress.ask();
     const CellsAlong along = cellsAlong(directions[number], sent.of_elements);
     std::array<float, kBands> of_sky{};
     for (std::size_t b = 0; b < bands; ++b) of_sky[b] = sent.sky[number][static_cast<int>(lit_->bands[b])];

@@ -138,19 +138,19 @@ StandMedium standMedium(std::span<const ClusteredTree> trees, const Bounds& box,
   next.assign(first.begin(), first.end() - 1);
   std::vector<Part> parts(first.back());
   for (std::size_t tree = 0; tree < of_trees.size(); ++tree) {
-    if (tree % kAsk == 0) trees_done.add(0.);
+    if (tree % kAsk == 0) trees_done.ask();
     for (const Part& part : of_trees[tree]) parts[next[part.slot]++] = part;
     of_trees[tree] = {};
   }
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.cells.size(), kAsk), [&](const auto& range) {
     for (std::size_t slot = range.begin(); slot < range.end(); ++slot)
       std::ranges::stable_sort(std::span(parts).subspan(first[slot], first[slot + 1] - first[slot]), {}, &Part::key);
-    trees_done.add(0.);
+    trees_done.ask();
   });
   medium.first_piece.assign(grid.cells.size() + 1, 0);
   for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
     const Part& of_all = parts[begin];
-    if (of_all.slot % (kAsk * kAsk) == 0) trees_done.add(0.);
+    if (of_all.slot % (kAsk * kAsk) == 0) trees_done.ask();
     double area = 0.;
     glm::dvec3 normal(0.);
     for (; end < parts.size() && parts[end].key() == of_all.key(); ++end) {

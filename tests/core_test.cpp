@@ -200,6 +200,7 @@ TEST(SharedProgress, IsToldByOneThreadAtATimeAndEndsAll) {
       EXPECT_EQ(calls, 10);
       EXPECT_GE(ended, 1);
       EXPECT_THROW(shared.add(), std::runtime_error);
+      EXPECT_THROW(shared.ask(), std::runtime_error);
       EXPECT_EQ(calls, 10);
     } else {
       EXPECT_EQ(ended, 0);
@@ -211,6 +212,7 @@ TEST(SharedProgress, IsToldByOneThreadAtATimeAndEndsAll) {
   const Progress none;
   SharedProgress silent(none, 1.);
   silent.add();
+  silent.ask();
   EXPECT_FALSE(silent.asking());
 }
 
