@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <numbers>
@@ -18,17 +17,14 @@
 
 #include "bench/damped_line.hpp"
 #include "bench/kept_trace.hpp"
+#include "bench/measurement.hpp"
 #include "core/csv_field.hpp"
 #include "core/elapsed.hpp"
-#include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "field/clumping.hpp"
 #include "field/grid_field.hpp"
 #include "field/leaf_field.hpp"
 #include "grid/leaf_depth.hpp"
-#include "plants/import.hpp"
-#include "plants/random_leaves.hpp"
-#include "plants/species.hpp"
 #include "render/compare/category_errors.hpp"
 #include "render/leaf_models.hpp"
 #include "render/stand_geometry.hpp"
@@ -51,66 +47,26 @@ struct Options {
   FieldEffort effort;
 };
 
-TreeMesh treeOf(const std::string& name) {
-  if (name == "crown") return randomCrown({}, 1);
-  if (name.find('.') != std::string::npos) return importTree(name).mesh;
-  return grow(species(name), 1);
-}
-
-std::vector<float> numbers(const char* text) {
-  std::vector<float> values;
-  for (char* end = const_cast<char*>(text); *end;) {
-    values.push_back(std::strtof(end, &end));
-    if (*end == ',') ++end;
-  }
-  return values;
-}
-
-Options optionsOf(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto next = [&] { return i + 1 < argc ? argv[++i] : ""; };
-    if (word == "--paths")
-      options.paths = std::strtoull(next(), nullptr, 10);
-    else if (word == "--keep")
-      options.keep = next();
-    else if (word == "--csv")
-      options.csv = next();
-    else if (word == "--cells")
-      options.cells = std::atoi(next());
-    else if (word == "--others")
-      options.others = true;
-    else if (word == "--axes")
-      options.effort.exchange.axes = std::atoi(next());
-    else if (word == "--crossings")
-      options.effort.exchange.crossings = std::strtof(next(), nullptr);
-    else if (word == "--pixels")
-      options.effort.direct.pixels = std::strtof(next(), nullptr);
-    else if (word == "--extent")
-      options.effort.elements.largest_extent = std::strtof(next(), nullptr);
-    else if (word == "--flatness")
-      options.effort.elements.least_flatness = std::strtof(next(), nullptr);
-    else if (word == "--patch")
-      options.effort.elements.wood_patch = std::strtof(next(), nullptr);
-    else if (word == "--error")
-      options.effort.solver.error = std::strtod(next(), nullptr);
-    else if (word == "--suns")
-      options.suns = numbers(next());
-    else if (word == "--albedos")
-      options.albedos = numbers(next());
-    else if (word == "--single")
-      options.periodic = false;
-    else if (word == "--periodic")
-      options.single = false;
-    else if (word == "--split")
-      options.split = true;
-    else if (word == "--no-wood")
-      options.wood = false;
-    else
-      options.trees.push_back(word);
-  }
-  return options;
+void addOptions(CLI::App& app, Options& options) {
+  app.add_option("trees", options.trees)->required();
+  app.add_option("--suns", options.suns)->delimiter(',');
+  app.add_option("--albedos", options.albedos)->delimiter(',');
+  app.add_option("--paths", options.paths);
+  app.add_option("--keep", options.keep);
+  app.add_option("--csv", options.csv);
+  app.add_option("--cells", options.cells);
+  app.add_flag("--others", options.others);
+  app.add_flag("!--single", options.periodic);
+  app.add_flag("!--periodic", options.single);
+  app.add_flag("!--no-wood", options.wood);
+  app.add_flag("--split", options.split);
+  app.add_option("--axes", options.effort.exchange.axes);
+  app.add_option("--crossings", options.effort.exchange.crossings);
+  app.add_option("--pixels", options.effort.direct.pixels);
+  app.add_option("--extent", options.effort.elements.largest_extent);
+  app.add_option("--flatness", options.effort.elements.least_flatness);
+  app.add_option("--patch", options.effort.elements.wood_patch);
+  app.add_option("--error", options.effort.solver.error);
 }
 
 // Each leaf triangle cut into four.
@@ -261,7 +217,7 @@ void summarize(const std::vector<Row>& rows) {
 }
 
 Case caseOf(const std::string& name, const Options& options, bool periodic, float zenith) {
-  TreeMesh mesh = treeOf(name);
+  TreeMesh mesh = measuredTree(name, 1);
   if (!options.wood) mesh.wood_triangles.clear();
   Case of{.name = name.substr(name.rfind('/') + 1), .zenith = zenith};
   if (periodic) {
@@ -391,28 +347,28 @@ std::vector<Row> judgeOthers(const Case& of, const FieldEffort& effort) {
   return rows;
 }
 
+void measure(const Options& options) {
+  if (!options.csv.empty()) requireWritable(options.csv);
+  std::vector<Row> rows;
+  for (const std::string& tree : options.trees)
+    for (const bool periodic : {false, true}) {
+      if (periodic ? !options.periodic : !options.single) continue;
+      for (const float sun : options.suns) {
+        const Case of = caseOf(tree, options, periodic, sun);
+        const std::vector<Row> more = options.others  ? judgeOthers(of, options.effort)
+                                      : options.cells ? judgeCells(of, options.effort, *options.cells)
+                                                      : judgeLines(of, options.effort);
+        rows.insert(rows.end(), more.begin(), more.end());
+        if (!options.csv.empty()) writeWhole(options.csv, csvOf(rows));
+      }
+    }
+  if (!rows.empty()) summarize(rows);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const Options options = optionsOf(argc, argv);
-    if (!options.csv.empty()) requireWritable(options.csv);
-    std::vector<Row> rows;
-    for (const std::string& tree : options.trees)
-      for (const bool periodic : {false, true}) {
-        if (periodic ? !options.periodic : !options.single) continue;
-        for (const float sun : options.suns) {
-          const Case of = caseOf(tree, options, periodic, sun);
-          const std::vector<Row> more = options.others  ? judgeOthers(of, options.effort)
-                                        : options.cells ? judgeCells(of, options.effort, *options.cells)
-                                                        : judgeLines(of, options.effort);
-          rows.insert(rows.end(), more.begin(), more.end());
-          if (!options.csv.empty()) writeWhole(options.csv, csvOf(rows));
-        }
-      }
-    if (!rows.empty()) summarize(rows);
-  } catch (const InvalidInput& mistake) {
-    fmt::print(stderr, "measure_field: {}\n", mistake.what());
-    return 2;
-  }
+  Options options;
+  return measurement(
+      "measure_field", argc, argv, [&](CLI::App& app) { addOptions(app, options); }, [&] { measure(options); });
 }

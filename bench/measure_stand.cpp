@@ -9,17 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <numeric>
 #include <string>
 
+#include "bench/measurement.hpp"
 #include "core/elapsed.hpp"
-#include "core/require.hpp"
 #include "field/large_stand.hpp"
-#include "plants/import.hpp"
-#include "plants/random_leaves.hpp"
-#include "plants/species.hpp"
 #include "render/compare/category_errors.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
@@ -39,45 +35,20 @@ struct Options {
   LargeStandEffort effort;
 };
 
-Options optionsOf(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto next = [&] { return i + 1 < argc ? std::atof(argv[++i]) : 0.; };
-    if (word == "--side")
-      options.side = static_cast<int>(next());
-    else if (word == "--sun")
-      options.sun = static_cast<float>(next());
-    else if (word == "--spacing")
-      options.spacing = static_cast<float>(next());
-    else if (word == "--albedo")
-      options.albedo = static_cast<float>(next());
-    else if (word == "--split")
-      options.split = static_cast<float>(next());
-    else if (word == "--ground")
-      options.ground = static_cast<float>(next());
-    else if (word == "--paths")
-      options.paths = static_cast<std::uint64_t>(next());
-    else if (word == "--cells")
-      options.effort.cells_along = static_cast<int>(next());
-    else if (word == "--periodic")
-      options.periodic = true;
-    else if (word == "--wood")
-      options.wood = true;
-    else if (word == "--whole")
-      options.whole = true;
-    else if (word == "--turn")
-      options.turn = true;
-    else
-      options.trees.push_back(word);
-  }
-  return options;
-}
-
-TreeMesh treeOf(const std::string& name, std::uint64_t seed) {
-  if (name == "crown") return randomCrown({.leaves = 10'000}, seed);
-  if (name.find('.') != std::string::npos) return importTree(name).mesh;
-  return grow(species(name), seed);
+void addOptions(CLI::App& app, Options& options) {
+  app.add_option("trees", options.trees)->required();
+  app.add_option("--side", options.side);
+  app.add_option("--spacing", options.spacing);
+  app.add_option("--sun", options.sun);
+  app.add_option("--albedo", options.albedo);
+  app.add_option("--split", options.split);
+  app.add_option("--ground", options.ground);
+  app.add_option("--cells", options.effort.cells_along);
+  app.add_option("--paths", options.paths);
+  app.add_flag("--periodic", options.periodic);
+  app.add_flag("--wood", options.wood);
+  app.add_flag("--turn", options.turn);
+  app.add_flag("--whole", options.whole);
 }
 
 Scene sceneOf(const Options& options) {
@@ -87,7 +58,7 @@ Scene sceneOf(const Options& options) {
   float width = 0.f;
   for (const std::string& name : options.trees) {
     TreeKind& kind = scene.kinds.emplace_back();
-    TreeMesh mesh = treeOf(name, scene.kinds.size());
+    TreeMesh mesh = measuredTree(name, scene.kinds.size(), {.leaves = 10'000});
     if (!options.wood) mesh.wood_triangles.clear();
     const glm::vec3 size = leafBounds(mesh).size();
     width = std::max({width, size.x, size.y});
@@ -179,12 +150,7 @@ void measure(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Options options = optionsOf(argc, argv);
-  try {
-    if (options.trees.empty()) throw InvalidInput("trees: none: must be at least 1");
-    measure(options);
-  } catch (const InvalidInput& mistake) {
-    fmt::print(stderr, "measure_stand: {}\n", mistake.what());
-    return 2;
-  }
+  Options options;
+  return measurement(
+      "measure_stand", argc, argv, [&](CLI::App& app) { addOptions(app, options); }, [&] { measure(options); });
 }

@@ -11,7 +11,8 @@
 namespace sunfleck {
 
 // (F28)
-float clumpingByEscape(const TurnedClusters& alone, const Bounds& box, float side, double escape) {
+float clumpingByEscape(const TurnedClusters& alone, const Bounds& box, float side, double escape,
+                       const Progress& progress) {
   const ClusteredTree tree{.turned = &alone, .position = glm::vec3(0.f), .kind = 0};
   const StandMedium medium = standMedium({&tree, 1}, box, side, std::nullopt);
   double area = 0.;
@@ -22,7 +23,7 @@ float clumpingByEscape(const TurnedClusters& alone, const Bounds& box, float sid
     const GridLight light{.optics = {{GridOptics{.leaf = {0.f, 0.f}, .wood_reflectance = 0.f}}},
                           .direct = std::vector<float>(medium.cells.area.size() * 2),
                           .entering = field.evenSky({&even, 1}, {&even, 1}, {})};
-    const GridSolution solution = field.solve(light);
+    const GridSolution solution = field.solve(light, {}, progress);
     const GridBalance& balance = solution.balance[0];
     return (balance.absorbed_leaves + balance.absorbed_wood) * balance.incoming / (2. * std::numbers::pi * area);
   };

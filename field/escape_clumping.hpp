@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/bounds.hpp"
+#include "core/progress.hpp"
 #include "field/stand_cells.hpp"
 
 namespace sunfleck {
@@ -11,6 +12,8 @@ namespace sunfleck {
 //   box     about the tree [m]
 //   side    of the cells [m]
 //   escape  share of the lines from its sides that leave the tree [1], 0 .. 1
-float clumpingByEscape(const TurnedClusters& alone, const Bounds& box, float side, double escape);
+// Throws std::runtime_error("interrupted") when `progress`, asked after each iteration, ends it.
+float clumpingByEscape(const TurnedClusters& alone, const Bounds& box, float side, double escape,
+                       const Progress& progress = {});
 
 }  // namespace sunfleck

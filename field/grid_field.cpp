@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::size_t kLanes = SphereOrdinates::kLanes;
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr std::size_t kKept = 6;  // steps that Anderson's acceleration looks back
+constexpr std::size_t kAsk = 4096;  // cells after which it is asked whether to go on
+constexpr std::size_t kKept = 6;    // steps that Anderson's acceleration looks back
 static_assert(GridField::kMostBands == detail::kMostFieldBands);
 
 // Directions of the upper half, rows as the exchange reads them.
@@ -218,7 +219,7 @@ void GridField::validate(const GridLight& light) const {
 }
 
 // (F17) What elements receive when they send what they sent of state.irradiance: replaces it.
-void GridField::step(State& state, const GridLight& light) {
+void GridField::step(State& state, const GridLight& light, SharedProgress& progress) {
   const std::size_t bands = light.bands(), slots = medium_.grid.cells.size(), pairs = ordinates_.rows() / 2,
                     stride = bands * kLanes;
   const detail::ExchangeRows rows = state.half.rows();
@@ -248,6 +249,7 @@ void GridField::step(State& state, const GridLight& light) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slots, 16), [&](const auto& range) {
     std::vector<float> of_cell(2 * pairs * stride);
     for (std::size_t slot = range.begin(); slot < range.end(); ++slot) {
+      if (slot % kAsk == 0) progress.ask();
       const auto [begin, end] = pieces(slot);
       exchange.send(rows, elements, begin, end, clumping_[slot] / medium_.grid.volume(), state.radiance.data(), bands,
                     of_cell.data());
@@ -259,6 +261,7 @@ void GridField::step(State& state, const GridLight& light) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slots, 16), [&](const auto& range) {
     std::vector<float> met(2 * pairs * stride);
     for (std::size_t slot = range.begin(); slot < range.end(); ++slot) {
+      if (slot % kAsk == 0) progress.ask();
       // Of what leaves meet, the share 1 - Omega is from leaves of their own clump.
       const float open = clumping_[slot];
       for (std::size_t row = 0; row < 2 * pairs; ++row) {
@@ -377,11 +380,13 @@ GridSolution GridField::solve(const GridLight& light, const GridEffort& effort, 
     bounds.emplace_back(weights, sides, most);
   }
   GridSolution solution;
-  double first_bound = 0.;
+  double first_bound = 0., share = 0.;
+  const Progress again = [&](double) { return goOn(progress, share); };
+  SharedProgress within(again, 1.);
   for (;;) {
     std::vector<std::vector<float>> values, found;
     for (std::size_t band = 0; band < bands; ++band) values.push_back(gather(band));
-    step(state, light);
+    step(state, light, within);
     ++solution.iterations;
     solution.error_bound = 0.;
     bool steady = true;
@@ -401,7 +406,8 @@ GridSolution GridField::solve(const GridLight& light, const GridEffort& effort, 
     if (solution.iterations == 1 || !std::isfinite(first_bound)) first_bound = solution.error_bound;
     const double falls = std::log(first_bound / solution.error_bound),
                  must_fall = std::log(first_bound / double{effort.error});
-    requireGoOn(progress, falls > 0. && falls < must_fall ? falls / must_fall : 0.);
+    share = std::max(share, falls > 0. && falls < must_fall ? falls / must_fall : 0.);
+    requireGoOn(progress, share);
     for (std::size_t band = 0; band < bands; ++band) {
       settleCells(light, band, values[band], found[band]);
       mixers[band].next(values[band], found[band]);

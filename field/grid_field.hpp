@@ -7,6 +7,7 @@
 
 #include "core/leaf_optics.hpp"
 #include "core/progress.hpp"
+#include "core/shared_progress.hpp"
 #include "field/cell_medium.hpp"
 #include "field/sphere_ordinates.hpp"
 #include "field/sweep.hpp"
@@ -78,7 +79,7 @@ class GridField {
 
   // Throws InvalidInput on no band or more than kMostBands, a share out of its range, light that is not finite or
   // negative, arrays that do not fit the medium, and on more memory than there is; std::runtime_error("interrupted")
-  // when `progress`, told after each iteration, ends it.
+  // when `progress`, told after each iteration and asked within, ends it.
   GridSolution solve(const GridLight& light, const GridEffort& effort = {}, const Progress& progress = {});
 
   // (F21) Direct light by extinction in the cells: for media of turbid leaves, and for stands in which the light of
@@ -96,7 +97,7 @@ class GridField {
  private:
   struct State;
   void validate(const GridLight& light) const;
-  void step(State& state, const GridLight& light);
+  void step(State& state, const GridLight& light, SharedProgress& progress);
   void settleCells(const GridLight& light, std::size_t band, std::span<const float> x, std::span<float> g) const;
 
   CellMedium medium_;

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.hpp"
+#include "core/shared_progress.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
 #include "field/grid_field.hpp"
@@ -57,11 +59,12 @@ class LargeStandField {
 
   // The field of the trees listed: those of the result's trees that are not are empty. Its balance is that of the whole
   // stand in cells, per band. Throws InvalidInput as LeafField::solve() does, and before work begins where memory would
-  // not suffice, with the figure.
+  // not suffice, with the figure; std::runtime_error("interrupted") when `progress`, asked after each axis of lines,
+  // iteration, tree or tile of the suns' pictures, ends it: what was made till then stays, and it may be asked again.
   //   seen  numbers of trees, each once
   //   far   those of which cells suffice, as they are too far to see leaves
   const FieldResult& solve(const FieldLighting& lighting, std::span<const std::size_t> seen,
-                           std::span<const std::size_t> far = {});
+                           std::span<const std::size_t> far = {}, const Progress& progress = {});
 
   // Of a tree that is far: irradiance of the front and the back of each of its groups of leaves by all but the suns'
   // direct light, per band [1]; and of each kind the side of a group, 2 group or 2 group + 1, that a side of an element
@@ -79,22 +82,25 @@ class LargeStandField {
   struct Lit;
   struct Sent;
 
-  void makeKinds();
-  void makeCells();
+  void makeKinds(const Progress& progress);
+  void makeTurns(const Progress& progress);
+  void makeCells(const Progress& progress);
   double lineArea() const;
   const TreePicture& pictureOf(Turn& turn, std::size_t sun) const;
-  void makeSuns(std::span<const std::size_t> seen);
-  void solveCells();
-  void solveTrees(std::span<const std::size_t> seen);
+  void makeSuns(std::span<const std::size_t> seen, const Progress& progress);
+  void solveCells(const Progress& progress);
+  void solveTrees(std::span<const std::size_t> seen, const Progress& progress);
   Sent sent() const;
   const std::vector<Direction>& exchangeDirections() const;
   CellsAlong cellsAlong(const Direction& s, std::span<const float> sent) const;
   LitTree litTree(std::size_t number) const;
-  std::vector<std::vector<float>> lightAtWalls(std::span<const std::size_t> now, const Sent& sent);
+  std::vector<std::vector<float>> lightAtWalls(std::span<const std::size_t> now, const Sent& sent,
+                                               SharedProgress& progress);
   std::vector<float> directLight(std::size_t tree, std::size_t sun) const;
-  std::vector<std::vector<float>> scatteredOnce(std::span<const std::size_t> now) const;
-  void solveAlongLines(std::span<const std::size_t> now, std::span<const std::vector<float>> around);
-  void tellFar(std::span<const std::size_t> far);
+  std::vector<std::vector<float>> scatteredOnce(std::span<const std::size_t> now, SharedProgress& progress) const;
+  void solveAlongLines(std::span<const std::size_t> now, std::span<const std::vector<float>> around,
+                       SharedProgress& progress);
+  void tellFar(std::span<const std::size_t> far, SharedProgress& progress);
   void requireMemory(const FieldLighting& lighting, std::span<const std::size_t> seen,
                      std::span<const std::size_t> far);
 
@@ -105,7 +111,11 @@ class LargeStandField {
   std::vector<std::unique_ptr<Kind>> kinds_;
   std::vector<std::unique_ptr<Turn>> turns_;
   std::vector<std::size_t> turn_of_tree_;
-  bool cells_stale_ = true;
+  // Steps of solve() that are made, in their order: each follows from those before it.
+  enum Step { kNothing, kKindsMade, kCellsMade, kSunsMade, kCellsSolved, kTreesSolved, kFarTold };
+  void makeStep(Step step, std::span<const std::size_t> seen, std::span<const std::size_t> far,
+                const Progress& progress);
+  Step made_ = kNothing;
   std::vector<ClusteredTree> trees_;
   std::optional<StandMedium> medium_;
   std::optional<GridField> cells_;

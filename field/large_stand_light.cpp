@@ -46,7 +46,7 @@ const TreePicture& LargeStandField::pictureOf(Turn& turn, std::size_t sun) const
   return turn.picture;
 }
 
-void LargeStandField::makeSuns(std::span<const std::size_t> seen) {
+void LargeStandField::makeSuns(std::span<const std::size_t> seen, const Progress& progress) {
   const Stopwatch watch(costs_[detail::kSun].seconds);
   const SweepGrid& grid = cells_->medium().grid;
   const std::size_t suns = lighting_->suns.size();
@@ -59,7 +59,15 @@ void LargeStandField::makeSuns(std::span<const std::size_t> seen) {
   for (std::size_t sun = 0; sun < suns; ++sun) {
     ++costs_[detail::kSun].made;
     const SunLines& lines = lit_->lines.emplace_back(sunLines(lighting_->suns[sun].along, line_area, stand_.period));
-    tbb::parallel_for(std::size_t{0}, turns_.size(), [&](std::size_t i) { pictureOf(*turns_[i], sun); });
+    const auto part = [&](double of_sun) { return (static_cast<double>(sun) + of_sun) / static_cast<double>(suns); };
+    constexpr double kOfPictures = 0.3;  // how far these are
+    const Progress of_pictures = partOf(progress, part(0.), part(kOfPictures)),
+                   of_tiles = partOf(progress, part(kOfPictures), part(1.));
+    SharedProgress pictures_done(of_pictures, static_cast<double>(turns_.size()));
+    tbb::parallel_for(std::size_t{0}, turns_.size(), [&](std::size_t i) {
+      pictureOf(*turns_[i], sun);
+      pictures_done.add();
+    });
     std::vector<SunlitTree> trees;
     for (std::size_t i = 0; i < stand_.trees.size(); ++i)
       trees.push_back({.picture = &turns_[turn_of_tree_[i]]->picture,
@@ -110,16 +118,19 @@ void LargeStandField::makeSuns(std::span<const std::size_t> seen) {
         }
     };
     const bool ground = lighting_->ground_albedo != glm::vec3(0.f) || stand_.period;
-    shineOn(trees, lines, lit, ground ? std::function<void(const SunTile&)>(on_ground) : nullptr);
+    shineOn(trees, lines, lit, ground ? std::function<void(const SunTile&)>(on_ground) : nullptr, of_tiles);
   }
 }
 
-void LargeStandField::solveCells() {
+void LargeStandField::solveCells(const Progress& progress) {
   const Stopwatch watch(costs_[detail::kCellSolution].seconds);
   const CellMedium& medium = cells_->medium();
   const SweepGrid& grid = medium.grid;
   const SphereOrdinates& ordinates = cells_->ordinates();
   const FieldLighting& lighting = *lighting_;
+  lit_->bands.clear();
+  lit_->solutions.clear();
+  lit_->scattered.clear();
   // Bands in which all is alike are solved once.
   const auto alike = [&](std::size_t a, std::size_t b) {
     const int i = static_cast<int>(a), k = static_cast<int>(b);
@@ -151,8 +162,14 @@ void LargeStandField::solveCells() {
   }
   stats_.cell_iterations = 0;
   stats_.cell_error = 0.;
-  result_.balance = {};
+  result_ = {};
+  result_.trees.resize(stand_.trees.size());
   for (const std::size_t band : lit_->bands) {
+    const auto part = [&](std::size_t solved) {
+      return static_cast<double>(solved) / static_cast<double>(lit_->bands.size());
+    };
+    const std::size_t solved = lit_->solutions.size();
+    requireGoOn(progress, part(solved));
     const int b = static_cast<int>(band);
     ++costs_[detail::kCellSolution].made;
     GridLight light{.optics = {{}}, .direct = std::vector<float>(2 * medium.area.size()), .entering = {}};
@@ -183,7 +200,7 @@ void LargeStandField::solveCells() {
         light.entering.ground_irradiance[i] +=
             static_cast<float>(irradiance * std::max(0., level - line * lit_->shaded[sun][i] / column));
     }
-    GridSolution solution = cells_->solve(light, effort_.cells);
+    GridSolution solution = cells_->solve(light, effort_.cells, partOf(progress, part(solved), part(solved + 1)));
     if (!solution.told.empty()) result_.converged = false;
     stats_.cell_iterations = std::max(stats_.cell_iterations, solution.iterations);
     stats_.cell_error = std::max(stats_.cell_error, solution.error_bound);
@@ -213,7 +230,7 @@ void LargeStandField::solveCells() {
 }
 
 // What comes to the groups of a far tree's leaves is the mean of what comes to their clusters' elements in the cells.
-void LargeStandField::tellFar(std::span<const std::size_t> far) {
+void LargeStandField::tellFar(std::span<const std::size_t> far, SharedProgress& progress) {
   const CellMedium& medium = cells_->medium();
   far_sides_.assign(stand_.trees.size(), {});
   tbb::parallel_for(std::size_t{0}, far.size(), [&](std::size_t i) {
@@ -234,6 +251,7 @@ void LargeStandField::tellFar(std::span<const std::size_t> far) {
     }
     for (std::size_t side = 0; side < sums.size(); ++side) sums[side] /= areas[side / 2];
     far_sides_[far[i]] = std::move(sums);
+    progress.add();
   });
 }
 

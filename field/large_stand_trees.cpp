@@ -20,6 +20,8 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr std::size_t kTogether = 4;  // trees of a kind that are solved side by side
 constexpr float kWallPixel = 0.5f;    // of the pictures of light at a tree's walls, in sides of cells [1]
+// How much of the work on a tree is on light at its walls and on direct light [1].
+constexpr double kOfWalls = 0.5, kOfDirect = 0.1;
 
 }  // namespace
 
@@ -139,7 +141,8 @@ LitTree LargeStandField::litTree(std::size_t number) const {
 }
 
 // (F29) Irradiance of each side of each tree's elements and band by what comes from outside.
-std::vector<std::vector<float>> LargeStandField::lightAtWalls(std::span<const std::size_t> now, const Sent& sent) {
+std::vector<std::vector<float>> LargeStandField::lightAtWalls(std::span<const std::size_t> now, const Sent& sent,
+                                                              SharedProgress& progress) {
   const SweepGrid& grid = cells_->medium().grid;
   const std::size_t bands = lit_->bands.size();
   const std::vector<Direction>& directions = exchangeDirections();
@@ -157,9 +160,11 @@ std::vector<std::vector<float>> LargeStandField::lightAtWalls(std::span<const st
   tbb::parallel_for(std::size_t{0}, now.size(), [&](std::size_t i) {
     trees[i] = litTree(now[i]);
     around[i].assign(kinds_[stand_.trees[now[i]].kind]->elements.size() * 2 * bands, 0.f);
+    progress.ask();
   });
   const float pixel = kWallPixel * std::min({grid.side.x, grid.side.y, grid.side.z});
   for (std::uint32_t number = 0; number < directions.size(); ++number) {
+    progress.ask();
     const CellsAlong along = cellsAlong(directions[number], sent.of_elements);
     std::array<float, kBands> of_sky{};
     for (std::size_t b = 0; b < bands; ++b) of_sky[b] = sent.sky[number][static_cast<int>(lit_->bands[b])];
@@ -192,6 +197,7 @@ std::vector<std::vector<float>> LargeStandField::lightAtWalls(std::span<const st
       for (std::size_t w = first_wall[turn]; w < first_wall[turn + 1]; ++w)
         addWallLight(trees[i], grid, along, outside, walls[w].pixels, walls[w].sides,
                      kinds_[turns_[turn]->kind]->per_line, bands, around[i]);
+      progress.add(kOfWalls / static_cast<double>(directions.size()));
     });
   }
   costs_[detail::kWalls].made += now.size();
@@ -209,7 +215,8 @@ std::vector<float> LargeStandField::directLight(std::size_t tree, std::size_t su
 }
 
 // (F6) Of each tree, band after band, what the lines of its sides bring of direct light, scattered once where it falls.
-std::vector<std::vector<float>> LargeStandField::scatteredOnce(std::span<const std::size_t> now) const {
+std::vector<std::vector<float>> LargeStandField::scatteredOnce(std::span<const std::size_t> now,
+                                                               SharedProgress& progress) const {
   const FieldLighting& lighting = *lighting_;
   const std::size_t bands = lit_->bands.size();
   std::vector<std::vector<float>> once(now.size());
@@ -237,17 +244,19 @@ std::vector<std::vector<float>> LargeStandField::scatteredOnce(std::span<const s
           float* const of_band = once[i].data() + b * brought.size();
           for (std::size_t side = 0; side < brought.size(); ++side) of_band[side] += glm::dot(share, brought[side]);
         }
+        progress.add(kOfDirect / static_cast<double>(lighting.suns.size()));
       });
     });
   return once;
 }
 
-void LargeStandField::solveAlongLines(std::span<const std::size_t> now, std::span<const std::vector<float>> around) {
+void LargeStandField::solveAlongLines(std::span<const std::size_t> now, std::span<const std::vector<float>> around,
+                                      SharedProgress& progress) {
   const FieldLighting& lighting = *lighting_;
   const std::size_t bands = lit_->bands.size();
   const Stopwatch watch(costs_[detail::kTrees].seconds);
   costs_[detail::kTrees].made += now.size();
-  const std::vector<std::vector<float>> once = scatteredOnce(now);
+  const std::vector<std::vector<float>> once = scatteredOnce(now, progress);
   // Trees of a kind side by side.
   std::vector<std::size_t> order(now.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -271,7 +280,7 @@ void LargeStandField::solveAlongLines(std::span<const std::size_t> now, std::spa
       optics[kind].push_back(
           {detail::opticsOf(lighting.kinds[kind], false, band), detail::opticsOf(lighting.kinds[kind], true, band)});
     for (const auto& of_band : optics[kind]) all.push_back({.optics = of_band});
-    stays[kind] = recollision(kinds_[kind]->geometry(), largestAlbedo(all));
+    stays[kind] = recollision(kinds_[kind]->geometry(), largestAlbedo(all), progress.asking());
   }
   std::vector<FieldResult> of_batches(batches.size());
   tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t batch) {
@@ -306,7 +315,7 @@ void LargeStandField::solveAlongLines(std::span<const std::size_t> now, std::spa
                           .optics = optics[number][p % bands]});
     }
     const std::vector<FieldSolution> solutions = tbb::this_task_arena::isolate(
-        [&] { return solveField(kind.geometry(), problems, stays[number], effort_.solver); });
+        [&] { return solveField(kind.geometry(), problems, stays[number], effort_.solver, progress.asking()); });
     FieldResult& of_batch = of_batches[batch];
     for (const FieldSolution& solution : solutions) {
       of_batch.iterations = std::max(of_batch.iterations, solution.iterations);
@@ -332,6 +341,7 @@ void LargeStandField::solveAlongLines(std::span<const std::size_t> now, std::spa
       }
       result_.trees[now[order[i]]] = std::move(leaves);
     }
+    progress.add(static_cast<double>(last - first) * (1. - kOfWalls - kOfDirect));
   });
   for (const FieldResult& of_batch : of_batches) {
     result_.iterations = std::max(result_.iterations, of_batch.iterations);
@@ -340,8 +350,9 @@ void LargeStandField::solveAlongLines(std::span<const std::size_t> now, std::spa
   }
 }
 
-void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
+void LargeStandField::solveTrees(std::span<const std::size_t> seen, const Progress& progress) {
   if (seen.empty()) return;
+  SharedProgress trees_done(progress, static_cast<double>(seen.size()));
   const Sent sent = this->sent();
   double of_tree = 1.;
   for (const auto& kind : kinds_)
@@ -349,7 +360,7 @@ void LargeStandField::solveTrees(std::span<const std::size_t> seen) {
   const auto chunk = std::max<std::size_t>(16, static_cast<std::size_t>(detail::kLargeStandLight / of_tree));
   for (std::size_t begin = 0; begin < seen.size(); begin += chunk) {
     const std::span<const std::size_t> now = seen.subspan(begin, std::min(chunk, seen.size() - begin));
-    solveAlongLines(now, lightAtWalls(now, sent));
+    solveAlongLines(now, lightAtWalls(now, sent, trees_done), trees_done);
   }
 }
 

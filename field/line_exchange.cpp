@@ -7,15 +7,14 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <mutex>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 
 #include "core/available_memory.hpp"
 #include "core/bounds.hpp"
 #include "core/require.hpp"
+#include "core/shared_progress.hpp"
 #include "field/detail/line_grid.hpp"
 
 namespace sunfleck {
@@ -109,26 +108,6 @@ double totalArea(const FieldElements& elements) {
   return std::accumulate(elements.area.begin(), elements.area.end(), 0.);
 }
 
-// Tells of axes that threads are done with, one thread at a time.
-class AxesDone {
- public:
-  AxesDone(const Progress& progress, std::size_t all) : progress_(progress), all_(static_cast<double>(all)) {}
-  bool oneMore() {  // whether to go on
-    const std::lock_guard lock(mutex_);
-    goes_on_ = goes_on_ && goOn(progress_, ++done_ / all_);
-    return goes_on_;
-  }
-  void requireGoOn() const {
-    if (!goes_on_) throw std::runtime_error("interrupted");
-  }
-
- private:
-  const Progress& progress_;
-  double all_, done_ = 0.;
-  bool goes_on_ = true;
-  std::mutex mutex_;
-};
-
 // A chunk's share of the links of each side, met and outside, and of the crossings of each element; then where its next
 // one goes.
 struct ChunkLinks {
@@ -211,7 +190,7 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
   const auto axesOfChunk = [&](std::size_t chunk) {
     return std::pair(chunk * axes / kChunks, (chunk + 1) * axes / kChunks);
   };
-  AxesDone axes_done(progress, 2 * axes);
+  SharedProgress axes_done(progress, 2. * static_cast<double>(axes));
   tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
     Work work;
     ChunkLinks& links = chunks[chunk];
@@ -229,10 +208,9 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
           found[axis], axis, axes, [&](std::uint32_t side, std::uint32_t, std::size_t) { ++links.met[side]; },
           [&](std::uint32_t side, std::uint16_t, std::size_t) { ++links.outside[side]; });
       for (const std::uint32_t side : found[axis].sides) ++links.crossings[(side & ~kFirstOnLine) / 2];
-      if (!axes_done.oneMore()) return;
+      axes_done.add();
     }
   });
-  axes_done.requireGoOn();
 
   const auto starts = [&](auto& first, std::vector<std::uint32_t> ChunkLinks::*counts) {
     using Number = std::decay_t<decltype(first[0])>;
@@ -276,10 +254,9 @@ LineExchange lineExchange(const TreeMesh& mesh, const FieldElements& elements, c
             exchange.outside[link] = direction;
             exchange.open_at[link] = crossing[i];
           });
-      if (!axes_done.oneMore()) return;
+      axes_done.add();
     }
   });
-  axes_done.requireGoOn();
   exchange.lines.resize(elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i)
     exchange.lines[i] = exchange.first_crossing[i + 1] - exchange.first_crossing[i];

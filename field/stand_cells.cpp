@@ -1,15 +1,17 @@
 #include "field/stand_cells.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/available_memory.hpp"
 #include "core/require.hpp"
+#include "core/shared_progress.hpp"
 
 namespace sunfleck {
 namespace {
@@ -83,8 +85,9 @@ std::uint32_t cellNumber(const SweepGrid& grid, glm::ivec3 cell) {
 
 // (F28)
 StandMedium standMedium(std::span<const ClusteredTree> trees, const Bounds& box, float side,
-                        const std::optional<glm::vec2>& period) {
+                        const std::optional<glm::vec2>& period, const Progress& progress) {
   StandMedium made;
+  SharedProgress trees_done(progress, 2. * static_cast<double>(trees.size()));
   CellMedium& medium = made.cells;
   SweepGrid& grid = medium.grid;
   grid = gridOf(box, side, period);
@@ -95,6 +98,7 @@ StandMedium standMedium(std::span<const ClusteredTree> trees, const Bounds& box,
   tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t tree) {
     for (std::size_t i = 0; i < trees[tree].turned->centre.size(); ++i)
       std::atomic_ref(taken[cellOf(trees[tree], i)]).store(1, std::memory_order_relaxed);
+    trees_done.add();
   });
   grid.slot.assign(grid.count(), SweepGrid::kEmpty);
   for (std::uint32_t cell = 0; cell < grid.slot.size(); ++cell)
@@ -123,37 +127,42 @@ StandMedium standMedium(std::span<const ClusteredTree> trees, const Bounds& box,
         parts[kept++] = parts[i];
       }
     of_trees[number].assign(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(kept));
+    trees_done.add();
   });
-  struct Numbered {
-    Part part;
-    std::uint32_t tree;
-    auto key() const { return std::tuple_cat(part.key(), std::tuple(tree)); }
-  };
-  std::vector<Numbered> parts;
-  std::size_t count = 0;
-  for (const auto& of_tree : of_trees) count += of_tree.size();
-  parts.reserve(count);
-  for (std::uint32_t tree = 0; tree < of_trees.size(); ++tree) {
-    for (const Part& part : of_trees[tree]) parts.push_back({part, tree});
+  // By cells, those of a cell in the order of the trees; then, those of a cell, by what they are.
+  constexpr std::size_t kAsk = 64;  // trees, and cells times as many, after which it is asked whether to go on
+  std::vector<std::uint32_t> first(grid.cells.size() + 1), next;
+  for (const auto& of_tree : of_trees)
+    for (const Part& part : of_tree) ++first[part.slot + 1];
+  for (std::size_t slot = 0; slot < grid.cells.size(); ++slot) first[slot + 1] += first[slot];
+  next.assign(first.begin(), first.end() - 1);
+  std::vector<Part> parts(first.back());
+  for (std::size_t tree = 0; tree < of_trees.size(); ++tree) {
+    if (tree % kAsk == 0) trees_done.ask();
+    for (const Part& part : of_trees[tree]) parts[next[part.slot]++] = part;
     of_trees[tree] = {};
   }
-  tbb::parallel_sort(parts.begin(), parts.end(),
-                     [](const Numbered& a, const Numbered& b) { return a.key() < b.key(); });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.cells.size(), kAsk), [&](const auto& range) {
+    for (std::size_t slot = range.begin(); slot < range.end(); ++slot)
+      std::ranges::stable_sort(std::span(parts).subspan(first[slot], first[slot + 1] - first[slot]), {}, &Part::key);
+    trees_done.ask();
+  });
   medium.first_piece.assign(grid.cells.size() + 1, 0);
   for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
-    const Part& first = parts[begin].part;
+    const Part& of_all = parts[begin];
+    if (of_all.slot % (kAsk * kAsk) == 0) trees_done.ask();
     double area = 0.;
     glm::dvec3 normal(0.);
-    for (; end < parts.size() && parts[end].part.key() == first.key(); ++end) {
-      area += double{parts[end].part.area};
-      normal += glm::dvec3(parts[end].part.normal);
+    for (; end < parts.size() && parts[end].key() == of_all.key(); ++end) {
+      area += double{parts[end].area};
+      normal += glm::dvec3(parts[end].normal);
     }
     medium.pieces.push_back({static_cast<std::uint32_t>(medium.area.size()), static_cast<float>(area)});
     medium.area.push_back(static_cast<float>(area));
     medium.normal.emplace_back(glm::normalize(normal));
-    medium.material.push_back(first.material);
-    made.axis.push_back(first.axis);
-    ++medium.first_piece[first.slot + 1];
+    medium.material.push_back(of_all.material);
+    made.axis.push_back(of_all.axis);
+    ++medium.first_piece[of_all.slot + 1];
   }
   for (std::size_t slot = 0; slot < grid.cells.size(); ++slot) medium.first_piece[slot + 1] += medium.first_piece[slot];
   const auto elements = static_cast<std::uint32_t>(medium.area.size());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/bounds.hpp"
+#include "core/progress.hpp"
 #include "field/cell_medium.hpp"
 #include "field/leaf_clusters.hpp"
 
@@ -38,9 +39,10 @@ struct StandMedium {
 
 //   box     about all trees, whose lowest side is the ground's [m]
 //   side    of the cells, with a period and in height as near as whole numbers of them come to it [m]
-// Throws InvalidInput where cells take more memory than there is.
+// Throws InvalidInput where cells take more memory than there is, and std::runtime_error("interrupted") when
+// `progress`, told after each tree, ends it.
 StandMedium standMedium(std::span<const ClusteredTree> trees, const Bounds& box, float side,
-                        const std::optional<glm::vec2>& period);
+                        const std::optional<glm::vec2>& period, const Progress& progress = {});
 
 // The cell that a point lies in, the nearest where it is rounded out of the grid; in a grid that repeats whole periods
 // are not taken off.

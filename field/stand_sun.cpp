@@ -11,6 +11,7 @@
 #include <map>
 
 #include "core/bounds.hpp"
+#include "core/shared_progress.hpp"
 #include "grid/detail/scan_conversion.hpp"
 
 namespace sunfleck {
@@ -108,7 +109,7 @@ TreePicture treePicture(const TreeMesh& mesh, const FieldElements& elements, flo
 // (F3)
 void shineOn(std::span<const SunlitTree> trees, const SunLines& lines,
              const std::function<void(std::size_t tree, std::span<const std::uint32_t> of_sides)>& lit,
-             const std::function<void(const SunTile& tile)>& seen) {
+             const std::function<void(const SunTile& tile)>& seen, const Progress& progress) {
   // Trees by the tiles that they reach into.
   std::map<std::pair<int, int>, std::vector<Copy>> of_tiles;
   const auto place = [&](const Copy& copy, const glm::ivec2& size) {
@@ -147,6 +148,7 @@ void shineOn(std::span<const SunlitTree> trees, const SunLines& lines,
     std::vector<std::uint32_t> lines;
   };
   tbb::enumerable_thread_specific<Work> works;
+  SharedProgress tiles_done(progress, static_cast<double>(tiles.size()));
   tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t number) {
     Work& work = works.local();
     const glm::ivec2 corner = tiles[number].first * kTile;
@@ -198,6 +200,7 @@ void shineOn(std::span<const SunlitTree> trees, const SunLines& lines,
       if (any) lit(copy.tree, work.lines);
     }
     if (seen) seen({corner, end - corner, kTile, work.depth});
+    tiles_done.add();
   });
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/directions.hpp"
+#include "core/progress.hpp"
 #include "core/tree_mesh.hpp"
 #include "field/elements.hpp"
 
@@ -73,8 +74,9 @@ struct SunTile {
 // from many threads, in any order:
 //   lit   a tree, and of each side of its elements how many lines come to it within a tile
 //   seen  a whole tile; may be none
+// Throws std::runtime_error("interrupted") when `progress`, told after each tile, ends it.
 void shineOn(std::span<const SunlitTree> trees, const SunLines& lines,
              const std::function<void(std::size_t tree, std::span<const std::uint32_t> of_sides)>& lit,
-             const std::function<void(const SunTile& tile)>& seen);
+             const std::function<void(const SunTile& tile)>& seen, const Progress& progress = {});
 
 }  // namespace sunfleck

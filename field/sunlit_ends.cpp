@@ -11,7 +11,7 @@
 namespace sunfleck {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // sides that are worth a task
+constexpr std::size_t kBlock = 512;  // elements that are worth a task
 constexpr std::uint32_t kDark = ~0u;
 
 // A picture of a tree that is turned, in which places on the tree are looked up that is not.
@@ -45,35 +45,20 @@ class Lookup {
 
   bool shows(std::uint32_t element) const { return shown_[element]; }
 
-  // A place on an element and where it lies in the picture.
-  struct Place {
-    std::uint32_t from;  // the side that is seen there
-    glm::ivec2 at;       // pixel
-    float depth;         // [m]
-  };
-  // Calls for the pixel, which lies anywhere in memory.
-  Place placeAt(std::uint32_t from, const glm::u16vec3& code) const {
+  // The side of an element that is lit at a place, kDark if none; and the pixel that tells whether the sun comes there.
+  std::uint32_t litSide(std::uint32_t element, const glm::u16vec3& code, std::uint32_t& pixel) const {
     const glm::vec3 told = first_ + per_code_ * glm::vec3(code);
-    const Place place{from, glm::clamp(glm::ivec2(glm::vec2(told)), glm::ivec2(0), picture_.size - 1), told.z};
-    __builtin_prefetch(&picture_.side[numberOf(place.at)]);
-    __builtin_prefetch(&picture_.depth[numberOf(place.at)]);
-    return place;
-  }
-
-  // The side of the element that is lit at a place, kDark if none; and the pixel that tells whether the sun comes
-  // there.
-  std::uint32_t litSide(const Place& place, std::uint32_t& pixel) const {
-    const std::uint32_t element = place.from / 2;
-    pixel = numberOf(place.at);
+    const glm::ivec2 at = glm::clamp(glm::ivec2(glm::vec2(told)), glm::ivec2(0), picture_.size - 1);
+    pixel = numberOf(at);
     const bool something = !std::isinf(picture_.depth[pixel]);
     const std::uint32_t met = picture_.side[pixel];
     if (something && met / 2 == element) return met;
     const std::uint32_t side = 2 * element + (glm::dot(elements_.normal[element], along_) > 0.f ? 1 : 0);
     if (something && sameLeaf(met / 2, element)) return side;
-    if (something && place.depth > picture_.depth[pixel]) return kDark;
+    if (something && told.z > picture_.depth[pixel]) return kDark;
     // The pixel's middle misses the leaf.
     for (const glm::ivec2 next : {glm::ivec2(1, 0), glm::ivec2(-1, 0), glm::ivec2(0, 1), glm::ivec2(0, -1)}) {
-      const glm::ivec2 beside = glm::clamp(place.at + next, glm::ivec2(0), picture_.size - 1);
+      const glm::ivec2 beside = glm::clamp(at + next, glm::ivec2(0), picture_.size - 1);
       const std::uint32_t number = numberOf(beside), other = picture_.side[number] / 2;
       if (std::isinf(picture_.depth[number]) || !(other == element || sameLeaf(other, element))) continue;
       pixel = number;
@@ -105,52 +90,51 @@ class Lookup {
 // (F6)
 SunlitEnds::SunlitEnds(const FieldElements& elements, const LineExchange& exchange, float rotation,
                        const SunLines& lines, const TreePicture& picture)
-    : elements_(elements), exchange_(exchange), blocks_((exchange.sides() + kBlock - 1) / kBlock) {
+    : elements_(elements), exchange_(exchange), blocks_((elements.size() + kBlock - 1) / kBlock) {
   const Lookup lookup(elements, exchange.places, rotation, lines, picture);
-  tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t number) {
-    Block& block = blocks_[number];
-    std::vector<Lookup::Place> places;
-    // Calls found(one, from) for each end that is lit of those that were put into `places`.
-    const auto look = [&](std::vector<End>& ends, const auto& found) {
-      for (const Lookup::Place& place : places) {
-        End one{};
-        one.side = lookup.litSide(place, one.pixel);
-        if (one.side == kDark) continue;
-        ends.push_back(one);
-        found(one.side != place.from);
-      }
-      places.clear();
-    };
-    const std::size_t end = std::min(exchange.sides(), (number + 1) * kBlock);
-    for (std::size_t side = number * kBlock; side < end; ++side) {
-      for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i)
-        if (lookup.shows(exchange.sees[i] / 2))
-          places.push_back(lookup.placeAt(exchange.sees[i], exchange.crossed_at[exchange.seen_at[i]]));
-      look(block.seen,
-           [&](bool through) { block.by.push_back(static_cast<std::uint32_t>(side) | (through ? kThrough : 0)); });
-      const auto from = static_cast<std::uint32_t>(side);
-      for (std::uint64_t i = exchange.first_outside[side]; i < exchange.first_outside[side + 1]; ++i)
-        if (lookup.shows(from / 2)) places.push_back(lookup.placeAt(from, exchange.crossed_at[exchange.open_at[i]]));
-      look(block.open, [](bool) {});
+  // Of each crossing twice the pixel, and 1 more where the back is lit.
+  std::vector<std::uint32_t> of_crossings(exchange.crossed_at.size(), kDark);
+  const auto overBlocks = [&](const auto& of_element) {
+    tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t block) {
+      for (std::size_t i = block * kBlock; i < std::min(elements.size(), (block + 1) * kBlock); ++i)
+        of_element(blocks_[block], static_cast<std::uint32_t>(i));
+    });
+  };
+  overBlocks([&](Block& block, std::uint32_t element) {
+    if (!lookup.shows(element)) return;
+    for (std::uint32_t c = exchange.first_crossing[element]; c < exchange.first_crossing[element + 1]; ++c) {
+      Lit lit{};
+      lit.side = lookup.litSide(element, exchange.crossed_at[c], lit.pixel);
+      if (lit.side == kDark) continue;
+      of_crossings[c] = 2 * lit.pixel + lit.side % 2;
+      block.crossings.push_back(lit);
     }
+  });
+  overBlocks([&](Block& block, std::uint32_t element) {
+    for (std::uint32_t side = 2 * element; side < 2 * element + 2; ++side)
+      for (std::uint64_t i = exchange.first[side]; i < exchange.first[side + 1]; ++i) {
+        const std::uint32_t of_crossing = of_crossings[exchange.seen_at[i]], from = exchange.sees[i];
+        if (of_crossing == kDark) continue;
+        block.seen.push_back({from - from % 2 + of_crossing % 2, of_crossing / 2});
+        block.by.push_back(side | (from % 2 == of_crossing % 2 ? 0 : kThrough));
+      }
   });
 }
 
 std::vector<glm::vec3> SunlitEnds::scatteredOnce(std::span<const float> irradiance, const LitPixels& lit) const {
   const std::size_t sides = exchange_.sides();
-  std::vector<std::uint32_t> ends(sides);
+  std::vector<std::uint32_t> crossings(sides);
   for (const Block& block : blocks_)
-    for (const std::vector<End>* of_block : {&block.seen, &block.open})
-      for (const End& one : *of_block) ends[one.side] += lit.lit(one.pixel);
+    for (const Lit& one : block.crossings) crossings[one.side] += lit.lit(one.pixel);
   // Where it falls it is as much as lets its lines carry away all that comes to the side.
   std::vector<float> where_lit(sides);
   std::vector<glm::vec3> brought(sides, glm::vec3(0.f));
   const auto isWood = [&](std::size_t side) { return side / 2 >= elements_.leaf_elements; };
   for (std::size_t side = 0; side < sides; ++side) {
     if (irradiance[side] == 0.f) continue;
-    if (ends[side] > 0) {
+    if (crossings[side] > 0) {
       where_lit[side] =
-          irradiance[side] * 2.f * static_cast<float>(exchange_.lines[side / 2]) / static_cast<float>(ends[side]);
+          irradiance[side] * static_cast<float>(exchange_.lines[side / 2]) / static_cast<float>(crossings[side]);
       continue;
     }
     // No line ends where it falls: it is spread over the side. Who sees a side is seen by it.
@@ -161,7 +145,7 @@ std::vector<glm::vec3> SunlitEnds::scatteredOnce(std::span<const float> irradian
   }
   for (const Block& block : blocks_)
     for (std::size_t i = 0; i < block.seen.size(); ++i) {
-      const End& one = block.seen[i];
+      const Lit& one = block.seen[i];
       if (!lit.lit(one.pixel)) continue;
       const bool through = (block.by[i] & kThrough) != 0, wood = isWood(one.side);
       if (wood && through) continue;

@@ -30,14 +30,14 @@ class SunlitEnds {
   std::vector<glm::vec3> scatteredOnce(std::span<const float> irradiance, const LitPixels& lit) const;
 
  private:
-  struct End {
+  struct Lit {
     std::uint32_t side;   // that is lit
     std::uint32_t pixel;  // of the picture
   };
-  // Of some sides, ends that they see, and the sides that see them, kThrough added where these see the element's other
-  // side; and ends that see the outside.
+  // Of some elements, crossings that are lit; and what their sides see that is, by which side, kThrough added where it
+  // sees the other side of the one that is lit.
   struct Block {
-    std::vector<End> seen, open;
+    std::vector<Lit> crossings, seen;
     std::vector<std::uint32_t> by;
   };
   static constexpr std::uint32_t kThrough = 1u << 31;

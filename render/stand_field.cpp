@@ -116,7 +116,7 @@ bool StandField::upToDate(const Scene& scene) const {
 
 // (F28) Trees in the order of their distance from the camera: leaf by leaf as many as there is room for, then by cells.
 void StandField::updateLarge(const Scene& scene, const FieldLighting& lighting,
-                             std::optional<std::span<const std::size_t>> trees) {
+                             std::optional<std::span<const std::size_t>> trees, const Progress& progress) {
   if (!trees) requireField(scene);
   if (!large_)
     large_ = std::make_unique<LargeStandField>(LargeStandEffort{
@@ -138,7 +138,7 @@ void StandField::updateLarge(const Scene& scene, const FieldLighting& lighting,
     seen.resize(near);
   }
   large_->setStand(meshesOf(scene), scene.stand);
-  result_ = &large_->solve(lighting, seen, far);
+  result_ = &large_->solve(lighting, seen, far, progress);
   far_.assign(far.empty() ? 0 : scene.stand.trees.size(), false);
   for (const std::size_t tree : far) far_[tree] = true;
 }
@@ -154,8 +154,7 @@ void StandField::update(const Scene& scene, FieldBy by, const Progress& progress
   sky_sun_ = scene.sun();
   sky_map_ = lighting.sky;
   if (leavesOf(scene) > kMostAsOne) {
-    requireGoOn(progress, 0.);
-    updateLarge(scene, lighting, trees);
+    updateLarge(scene, lighting, trees, progress);
     ground_.clear();
   } else {
     const auto solved = [&](auto& field) {

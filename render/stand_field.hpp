@@ -75,8 +75,8 @@ class StandField {
   static Kind kindOf(const std::shared_ptr<const TreeMesh>& mesh);
   FieldLighting lightingOf(const Scene& scene) const;
 
-  void updateLarge(const Scene& scene, const FieldLighting& lighting,
-                   std::optional<std::span<const std::size_t>> trees);
+  void updateLarge(const Scene& scene, const FieldLighting& lighting, std::optional<std::span<const std::size_t>> trees,
+                   const Progress& progress);
 
   FieldEffort effort_;
   SceneSky sky_;  // that sky_map_ was made of, with the sun that lights it

@@ -7,12 +7,15 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <mutex>
 #include <numbers>
+#include <thread>
 
 #include "core/directions.hpp"
 #include "core/leaf_optics.hpp"
 #include "core/random.hpp"
 #include "core/require.hpp"
+#include "core/shared_progress.hpp"
 #include "core/tree_mesh.hpp"
 #include "core/whole_file.hpp"
 
@@ -160,6 +163,57 @@ TEST(TreeMesh, FinishRefusesBrokenMeshes) {
   TreeMesh only_wood = twoLeaves();
   only_wood.leaf_triangles.clear();
   EXPECT_THROW(finish(only_wood, "test"), InvalidInput);
+}
+
+// Check that threads that share work tell of it one at a time, of no less than was told before and at last of all of
+// it, and that all of them end once one was told to.
+TEST(SharedProgress, IsToldByOneThreadAtATimeAndEndsAll) {
+  constexpr int kThreads = 4, kParts = 1000;
+  for (const int most_calls : {std::numeric_limits<int>::max(), 10}) {
+    int calls = 0, inside = 0, ended = 0;  // guarded by what is tested; `ended` by its mutex
+    double before = 0.;
+    const Progress progress = [&](double done) {
+      EXPECT_EQ(++inside, 1);
+      EXPECT_GE(done, before);
+      EXPECT_LE(done, 1.);
+      before = done;
+      --inside;
+      return ++calls < most_calls;
+    };
+    SharedProgress shared(progress, kThreads * kParts + 1);
+    std::mutex of_ended;
+    const auto work = [&] {
+      try {
+        for (int i = 0; i < kParts; ++i) shared.add();
+      } catch (const std::runtime_error& interrupted) {
+        EXPECT_STREQ(interrupted.what(), "interrupted");
+        const std::lock_guard lock(of_ended);
+        ++ended;
+      }
+    };
+    {
+      std::vector<std::jthread> threads;
+      for (int i = 0; i < kThreads; ++i) threads.emplace_back(work);
+    }
+    if (most_calls == 10) {
+      // A thread may have been done before.
+      EXPECT_EQ(calls, 10);
+      EXPECT_GE(ended, 1);
+      EXPECT_THROW(shared.add(), std::runtime_error);
+      EXPECT_THROW(shared.ask(), std::runtime_error);
+      EXPECT_EQ(calls, 10);
+    } else {
+      EXPECT_EQ(ended, 0);
+      EXPECT_TRUE(shared.asking()(0.5));  // tells nothing of its own
+      shared.add();
+      EXPECT_EQ(before, 1.);
+    }
+  }
+  const Progress none;
+  SharedProgress silent(none, 1.);
+  silent.add();
+  silent.ask();
+  EXPECT_FALSE(silent.asking());
 }
 
 // Check that no wrong value reads as a right one: the nearest above 1 of either precision is not told as 1.

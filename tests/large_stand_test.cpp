@@ -8,12 +8,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <numeric>
 #include <string>
 
 #include "core/require.hpp"
 #include "field/direct_light.hpp"
+#include "field/sunlit_ends.hpp"
 #include "plants/random_leaves.hpp"
 #include "sky/sky_models.hpp"
 
@@ -98,7 +100,9 @@ TEST(F3_StandSun, LosesNoLineOfASunOverAStandThatRepeats) {
   EXPECT_NEAR(lines.line_area * lines.repeat->x * lines.repeat->y,
               double{period.x} * double{period.y} * -double{along.z}, 1e-6);
   const TreePicture picture = treePicture(*tree, elements, 0.f, lines);
-  const SunlitTree stands{.picture = &picture, .sides = 2 * elements.size(), .position = {5.f, -3.f, 1.f}};
+  LitPixels pixels(picture);
+  const SunlitTree stands{
+      .picture = &picture, .sides = 2 * elements.size(), .position = {5.f, -3.f, 1.f}, .pixels = &pixels};
   std::atomic<std::uint64_t> met = 0, free = 0;
   shineOn(
       {&stands, 1}, lines,
@@ -111,13 +115,73 @@ TEST(F3_StandSun, LosesNoLineOfASunOverAStandThatRepeats) {
             free += std::isinf(tile.depth[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)]);
       });
   EXPECT_EQ(met + free, static_cast<std::uint64_t>(lines.repeat->x) * static_cast<std::uint64_t>(lines.repeat->y));
+  std::uint64_t lit = 0;
+  for (std::size_t pixel = 0; pixel < picture.side.size(); ++pixel) lit += pixels.lit(pixel);
+  EXPECT_EQ(lit, met);
   const DirectLight light = directLight(*tree, elements, period, along);
   EXPECT_NEAR(static_cast<double>(met) * lines.line_area, light.power, 1e-3 * light.power);
 }
 
+// Check that direct light goes out from where it falls along the lines of its side, no more and no less, whichever
+// pixels are in the shade of others: where each line meets something (here those that would leave come back to their
+// own side), what is reflected is all of it, and so is what goes through, but for roundings.
+TEST(F6_SunlitEnds, SendsOutAllThatComesToASide) {
+  const auto tree = crown(4);
+  const FieldElements elements = fieldElements(*tree);
+  const LineExchange open = lineExchange(*tree, elements, std::nullopt);
+  LineExchange closed = open;
+  closed.sees.clear();
+  closed.seen_at.clear();
+  closed.outside.clear();
+  closed.open_at.clear();
+  closed.first_outside.assign(open.first_outside.size(), 0);
+  for (std::uint32_t side = 0; side < open.sides(); ++side) {
+    closed.first[side] = closed.sees.size();
+    for (std::uint64_t i = open.first[side]; i < open.first[side + 1]; ++i) {
+      closed.sees.push_back(open.sees[i]);
+      closed.seen_at.push_back(open.seen_at[i]);
+    }
+    for (std::uint64_t i = open.first_outside[side]; i < open.first_outside[side + 1]; ++i) {
+      closed.sees.push_back(side);
+      closed.seen_at.push_back(open.open_at[i]);
+    }
+  }
+  closed.first.back() = closed.sees.size();
+  const SunLines lines = sunLines(sunlight(0.6f, 0.4f), 4e-5, std::nullopt);
+  const float rotation = 0.7f;
+  const TreePicture picture = treePicture(*tree, elements, rotation, lines);
+  const SunlitEnds ends(elements, closed, rotation, lines, picture),
+      ends_of_open(elements, open, rotation, lines, picture);
+  for (const bool shaded : {false, true}) {
+    LitPixels lit(picture);
+    std::vector<float> irradiance(open.sides());
+    for (std::size_t pixel = 0; pixel < picture.side.size(); ++pixel) {
+      const std::size_t word = pixel / LitPixels::kBits;
+      if (std::isinf(picture.depth[pixel]) || (shaded && word % 2 == 1)) continue;
+      lit.add(word, std::uint64_t{1} << (pixel % LitPixels::kBits));
+      const std::uint32_t side = picture.side[pixel];
+      irradiance[side] += static_cast<float>(lines.line_area) / elements.area[side / 2];
+    }
+    double comes = 0., evenly = 0.;  // and of it, what would meet leaves if it were even over sides
+    for (std::size_t side = 0; side < irradiance.size(); ++side) {
+      comes += double{irradiance[side]} * open.lines[side / 2];
+      evenly += double{irradiance[side]} * static_cast<double>(open.first[side + 1] - open.first[side]);
+    }
+    glm::dvec3 all(0.), met(0.);
+    for (const glm::vec3& brought : ends.scatteredOnce(irradiance, lit)) all += brought;
+    for (const glm::vec3& brought : ends_of_open.scatteredOnce(irradiance, lit)) met += brought;
+    EXPECT_NEAR(all.x, comes, 1e-5 * comes);
+    EXPECT_NEAR(all.y, comes, 1e-5 * comes);
+    EXPECT_EQ(all.z, 0.);
+    // What is reflected leaves rather by the gap that it came by.
+    EXPECT_LT(met.x, 0.98 * evenly);
+  }
+}
+
 // Check a tree that stands alone, in a sun and under a sky: what comes to it from outside is then the sky's light
-// alone, along the very lines of LeafField. What they differ by, 1.3 % of a leaf's light when this was written, is that
-// LeafField scatters the sun's light from where it falls and lets light go back where it came from (F6, F7).
+// alone, along the very lines of LeafField, and light is scattered from where it falls and goes back where it came from
+// as there (F6, F7). What they differ by, .65 % of a leaf's light when this was written, is that the suns' pictures
+// have other pixels.
 TEST(F29_LargeStand, LightsATreeAloneAsItsLinesDo) {
   const auto tree = crown(3);
   const std::array kinds{tree};
@@ -136,12 +200,12 @@ TEST(F29_LargeStand, LightsATreeAloneAsItsLinesDo) {
     off += std::pow(both(found.trees[0][leaf].scattered[0]) - expected, 2);
     squares += expected * expected;
   }
-  EXPECT_LT(std::sqrt(off / squares), 0.02);
+  EXPECT_LT(std::sqrt(off / squares), 0.01);
   EXPECT_NEAR(meanOf(found.trees[0]), meanOf(truth.trees[0]), 3e-3 * meanOf(truth.trees[0]));
 }
 
 // Check trees of two kinds, turned, whose crowns touch, against the stand solved as one: the light of each tree to 1 %,
-// of all to .3 % (it was .5 and .1 when this was written), and of single leaves to 7 % (5.7, most of which is that of
+// of all to .3 % (it was .6 and .1 when this was written), and of single leaves to 7 % (4.8, most of which is that of
 // the pictures' pixels).
 TEST(F29_LargeStand, AgreesWithTheStandSolvedAsOne) {
   const Woods woods;
@@ -248,6 +312,52 @@ TEST(F28_LargeStand, TellsOfFarTreesByGroups) {
     EXPECT_NEAR(sum / static_cast<double>(elements.size()), near[i], 0.02 * near[i]);
   }
   EXPECT_TRUE(large.farSides(0).empty());
+}
+
+// Check that what is ended, wherever that is, tells so and has told how far it was, and comes to the same bits when it
+// is asked again, at last without making anew what does not follow from what has changed.
+TEST(LargeStand, EndsWhenItIsTold) {
+  const Woods woods(2);
+  FieldLighting lighting = sunlit(2);
+  lighting.suns.push_back({.along = sunlight(0.3f, 2.f), .irradiance = glm::vec3(0.2f)});
+  lighting.ground_albedo = {0.1f, 0.2f, 0.3f};
+  const std::vector<std::size_t> seen{0, 1, 3}, far{2};
+  LargeStandField whole, field;
+  whole.setStand(woods.kinds, woods.stand);
+  field.setStand(woods.kinds, woods.stand);
+  const auto expected = whole.solve(lighting, seen, far).trees;
+  const std::vector<glm::vec3> expected_far(whole.farSides(2).begin(), whole.farSides(2).end());
+  int stops = 0, more = 1;
+  for (bool ended = false; !ended; stops += more++) {  // later and later: a stop in every step, and few in all
+    int calls = 0;
+    double before = 0.;
+    const auto progress = [&](double done) {
+      EXPECT_GE(done, before - 1e-12);
+      EXPECT_LE(done, 1. + 1e-12);
+      before = done;
+      return calls++ < stops;
+    };
+    try {
+      const auto found = field.solve(lighting, seen, far, progress).trees;
+      for (std::size_t tree = 0; tree < expected.size(); ++tree) {
+        ASSERT_EQ(found[tree].size(), expected[tree].size());
+        EXPECT_EQ(std::memcmp(found[tree].data(), expected[tree].data(), found[tree].size() * sizeof(LeafLight)), 0);
+      }
+      EXPECT_TRUE(std::ranges::equal(field.farSides(2), expected_far));
+      ended = true;
+    } catch (const std::runtime_error& interrupted) {
+      EXPECT_STREQ(interrupted.what(), "interrupted");
+    }
+    ASSERT_LT(more, 200);
+  }
+  EXPECT_GT(more, 10);
+  EXPECT_EQ(field.costs()[0].made, 2u);  // kinds, each once
+  // Only what is far is new.
+  const auto solved = field.costs();
+  const std::array others{std::size_t{1}, std::size_t{2}};
+  field.solve(lighting, seen, others);
+  for (std::size_t i = 0; i < solved.size(); ++i) EXPECT_EQ(field.costs()[i].made, solved[i].made) << solved[i].name;
+  EXPECT_FALSE(field.farSides(1).empty());
 }
 
 // Check that the number of threads changes nothing.

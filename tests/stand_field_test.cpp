@@ -125,4 +125,27 @@ TEST(StandField, RefusesForests) {
   EXPECT_THROW(StandField().update(forest), InvalidInput);
 }
 
+// Check that the field of a stand of very many trees, too, tells how far it is, ends when it is told, and comes when it
+// is asked again: 2.1 million leaves, of which a picture shows a tree.
+TEST(StandField, EndsWhenItIsToldInForests) {
+  Scene forest = scene();
+  forest.kinds[0].mesh = std::make_shared<const TreeMesh>(randomCrown({.leaves = 3'000}, 1));
+  forest.stand.trees.clear();
+  for (int i = 0; i < 700; ++i)
+    forest.stand.trees.push_back(
+        {.position = {3.f * static_cast<float>(i % 28), 3.f * static_cast<float>(i / 28), 0.f}});
+  const std::array<std::size_t, 1> shown{350};
+  StandField field;
+  double last = 0.;
+  for (const double end : {0.3, 0.9}) {
+    const auto until = [&](double done) { return (last = done) < end; };
+    EXPECT_THROW(field.update(forest, FieldBy::lines, until, {}, shown), std::runtime_error);
+    EXPECT_GE(last, end);
+    EXPECT_LT(last, 1.);
+  }
+  field.update(forest, FieldBy::lines, {}, {}, shown);
+  EXPECT_EQ(field.sides(350).size(), 6'000u);
+  EXPECT_TRUE(field.sides(0).empty());
+}
+
 }  // namespace

@@ -29,7 +29,7 @@ double peakMegabytes() {
 }
 
 ForestBenchRow measured(const std::vector<std::shared_ptr<const TreeMesh>>& kinds, std::size_t count,
-                        std::size_t most_near) {
+                        std::size_t most_near, const Progress& progress) {
   Stand stand{.trees = {}};
   const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
   const glm::vec3 size = leafBounds(*kinds[0]).size();
@@ -57,7 +57,7 @@ ForestBenchRow measured(const std::vector<std::shared_ptr<const TreeMesh>>& kind
   const Elapsed elapsed;
   LargeStandField field;
   field.setStand(kinds, stand);
-  const FieldResult& result = field.solve(lighting, near, far);
+  const FieldResult& result = field.solve(lighting, near, far, progress);
   ForestBenchRow row{.trees = count,
                      .near = near.size(),
                      .leaves = static_cast<double>(count) * kLeaves,
@@ -89,10 +89,17 @@ ForestBench benchForests(std::size_t most_trees, std::size_t most_near, const Pr
     return sum + static_cast<double>(count) + 100.;
   });
   double done = 0.;
-  for (const std::size_t count : counts) {
-    if (!goOn(progress, done / work)) return {};
-    bench.rows.push_back(measured(kinds, count, most_near));
-    done += static_cast<double>(count) + 100.;
+  bool goes_on = true;
+  const Progress asked = [&](double of_work) { return goes_on = goOn(progress, of_work); };
+  try {
+    for (const std::size_t count : counts) {
+      const double next = done + static_cast<double>(count) + 100.;
+      bench.rows.push_back(measured(kinds, count, most_near, partOf(asked, done / work, next / work)));
+      done = next;
+    }
+  } catch (const std::runtime_error&) {
+    if (goes_on) throw;
+    return {};
   }
   return bench;
 }

@@ -103,17 +103,17 @@ class StandContestant final : public SceneContestant {
     for (const TreeKind& kind : scene.kinds) meshes_.push_back(kind.mesh);
   }
 
-  std::vector<float> fromNothing(int /*round*/, const Progress& /*progress*/) override {
+  std::vector<float> fromNothing(int /*round*/, const Progress& progress) override {
     field_.emplace(effort_);
     field_->setStand(meshes_, scene_.stand);
-    return answer(scene_);
+    return answer(progress);
   }
-  void turnAway(const Progress& /*progress*/) override { field_->solve(fieldLighting(turned_), all_); }
-  std::vector<float> sunTurned(int /*round*/, const Progress& /*progress*/) override { return answer(scene_); }
+  void turnAway(const Progress& progress) override { field_->solve(fieldLighting(turned_), all_, {}, progress); }
+  std::vector<float> sunTurned(int /*round*/, const Progress& progress) override { return answer(progress); }
 
  private:
-  std::vector<float> answer(const Scene& scene) {
-    return leafIrradiance(field_->solve(fieldLighting(scene), all_), scene, band_);
+  std::vector<float> answer(const Progress& progress) {
+    return leafIrradiance(field_->solve(fieldLighting(scene_), all_, {}, progress), scene_, band_);
   }
 
   const Scene scene_, turned_;
