@@ -301,9 +301,10 @@ void addPlant(CLI::App& app, RunOptions& options, int& status) {
   command->add_option("-o,--output", plant->output,
                       "File to write: .obj, with its .mtl beside it, .ply, .glb, .gltf, or of a file a scene: .toml");
   command->add_option("--thumbnail", plant->thumbnail, "A small picture to write: .png");
-  command->add_option("--gallery", plant->gallery,
-                      "Draw all species, and the mesh files that follow, with their names on one sheet: a .png file");
-  command->add_option("files", plant->gallery_files, "More mesh files for --gallery")->needs("--gallery");
+  command->add_option(
+      "--gallery", plant->gallery,
+      "Draw all species, and the mesh files and scenes that follow, on one sheet with names: a .png file");
+  command->add_option("files", plant->gallery_files, "More files for --gallery")->needs("--gallery");
   addImportOptions(*command, plant->import);
   command->get_option("--species")->excludes(input);
   for (const char* of_input : {"--leaf", "--wood", "--scale", "--unit", "--up", "--cards", "--mesh"})

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "apps/lettering.hpp"
 #include "apps/terminal.hpp"
@@ -14,6 +15,7 @@
 #include "plants/species.hpp"
 #include "plants/weber_penn.hpp"
 #include "render/image_file.hpp"
+#include "render/scene_file.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -47,6 +49,12 @@ void draw(Sheet& sheet, std::size_t number, const std::string& name, const TreeM
         left, top + kTile + 4 + 2 * kLetterHeight, 1);
 }
 
+// Of a scene, which can say how its file is to be read, the first kind.
+std::shared_ptr<const TreeMesh> treeOf(const std::string& file, const ImportRules& rules) {
+  if (std::filesystem::path(file).extension() == ".toml") return readScene(file).kinds.front().mesh;
+  return std::make_shared<const TreeMesh>(importTree(file, rules, readOpacity).mesh);
+}
+
 }  // namespace
 
 void writeGallery(const std::filesystem::path& sheet_file, const std::vector<std::string>& files,
@@ -63,8 +71,7 @@ void writeGallery(const std::filesystem::path& sheet_file, const std::vector<std
     if (progress) progress(static_cast<double>(done) / static_cast<double>(names.size() + files.size()));
   };
   for (const std::string& name : names) next(name, grow(species(name), run.seed));
-  for (const std::string& file : files)
-    next(std::filesystem::path(file).filename().string(), importTree(file, rules, readOpacity).mesh);
+  for (const std::string& file : files) next(std::filesystem::path(file).filename().string(), *treeOf(file, rules));
   writePng(sheet_file, sheet.width, sheet.height, sheet.colours);
 }
 
