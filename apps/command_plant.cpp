@@ -191,7 +191,10 @@ int runPlant(const PlantOptions options, const RunOptions& run) {
     std::vector<std::string> files = options.gallery_files;
     if (!options.input.empty()) files.insert(files.begin(), options.input);
     writeGallery(options.gallery, files, options.import.rules(), run);
-    if (!run.json) fmt::print("wrote {}\n", options.gallery);
+    if (run.json)
+      fmt::print("{}\n", nlohmann::ordered_json{{"gallery", options.gallery}}.dump(2));
+    else
+      fmt::print("wrote {}\n", options.gallery);
     return 0;
   }
   if (options.input == kTurbidEllipsoid) return writeTurbidEllipsoid(options, run);
