@@ -49,6 +49,7 @@ Image decoded(const fs::path& file, std::string_view bytes, ImageValues values,
   const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": cannot be read: " + why); };
   std::error_code failure;
   if (bytes.empty() && !fs::is_regular_file(file, failure)) refuse("there is no such file");
+  if (!bytes.empty() && !file.has_extension()) refuse("its format is not told");
   detail::StoredImage stored;
   Image image = read(file, bytes, [&](const detail::StoredImage& of_file) {
     stored = of_file;

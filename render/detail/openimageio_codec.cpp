@@ -21,8 +21,12 @@ class OpenImageIoCodec final : public ImageCodec {
     OIIO::ImageSpec as_stored;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);  // else colours would come multiplied by alpha
     OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
-    const auto in = OIIO::ImageInput::open(file.string(), &as_stored, bytes.empty() ? nullptr : &memory);
+    const auto in = bytes.empty() ? OIIO::ImageInput::open(file.string(), &as_stored)
+                                  : OIIO::ImageInput::create(file.extension().string().substr(1));
     if (!in) fail(OIIO::geterror());
+    if (OIIO::ImageSpec of_memory;
+        !bytes.empty() && (!in->set_ioproxy(&memory) || !in->open(file.string(), of_memory, as_stored)))
+      fail(in->geterror());
     const OIIO::ImageSpec& spec = in->spec();
     check({.width = spec.width,
            .height = spec.height,
