@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
+#include "apps/gallery.hpp"
+#include "apps/import_options.hpp"
 #include "apps/plant_report.hpp"
 #include "apps/plant_stand.hpp"
 #include "apps/thumbnail.hpp"
@@ -19,6 +21,7 @@
 #include "plants/write_gltf.hpp"
 #include "plants/write_obj.hpp"
 #include "plants/write_ply.hpp"
+#include "render/image_file.hpp"
 #include "render/scene_file.hpp"
 
 namespace sunfleck::apps {
@@ -30,8 +33,10 @@ namespace fs = std::filesystem;
 constexpr const char *kRandomCrown = "random_crown", *kTurbidEllipsoid = "turbid_ellipsoid";
 
 struct PlantOptions {
-  std::string input, species = "cherry", output, up, thumbnail;
-  ImportRules rules;
+  std::string input, species = "cherry", output, thumbnail;
+  ImportOptions import;
+  std::string gallery;
+  std::vector<std::string> gallery_files;
   bool list = false;
   std::vector<std::string> write_species;  // a name and a file
   PlantStand stand;
@@ -41,9 +46,15 @@ struct PlantOptions {
   float density = 1.f, cell_size = 0.1f;  // of a turbid ellipsoid [1/m], [m]
 };
 
+// A tree, or the kinds of trees of a file that is a stand.
 struct Plant {
-  TreeKind kind;
-  std::string source, how;
+  std::vector<TreeKind> kinds{TreeKind{}};
+  std::vector<CardAreas> cards{CardAreas{}};  // of each
+  std::vector<std::string> hows{""};          // of each, how leaf and wood were told apart
+  Stand stand;
+  std::string source;
+
+  bool isStand() const { return kinds.size() > 1 || stand != Stand{}; }
 };
 
 // Whether the input is to be grown: a species by its name, or by its parameter file.
@@ -51,6 +62,11 @@ bool isGrown(const std::string& input) {
   const std::vector<std::string> names = speciesNames();
   return input.empty() || fs::path(input).extension() == ".toml" ||
          std::find(names.begin(), names.end(), input) != names.end();
+}
+
+// Whether the input is a file to be read.
+bool isFile(const std::string& input) {
+  return !isGrown(input) && input != kRandomCrown && input != kTurbidEllipsoid;
 }
 
 int writeSpecies(const std::string& name, const std::string& file) {
@@ -82,27 +98,55 @@ int writeTurbidEllipsoid(const PlantOptions& options, const RunOptions& run) {
   return 0;
 }
 
+// Into an .obj or a .ply goes a stand as one mesh.
+void takeFile(Plant& plant, const PlantOptions& options) {
+  const ImportRules rules = options.import.rules();
+  const fs::path file = options.input;
+  const std::string ending = fs::path(options.output).extension().string();
+  ImportedStand imported;
+  if (ending == ".obj" || ending == ".ply")
+    imported.kinds.push_back({file.stem().string(), importTree(file, rules, readOpacity)});
+  else
+    imported = importStand(file, rules, readOpacity);
+  plant.stand = imported.stand;
+  plant.source = options.input;
+  plant.kinds.assign(imported.kinds.size(), plant.kinds.front());
+  plant.cards.assign(imported.kinds.size(), {});
+  plant.hows.clear();
+  for (std::size_t i = 0; i < plant.kinds.size(); ++i) {
+    TreeKind& kind = plant.kinds[i];
+    ImportedTree& tree = imported.kinds[i].tree;
+    kind.name = imported.kinds[i].name;
+    kind.recipe = {.species = {}, .file = options.input, .rules = rules};
+    if (plant.isStand()) kind.recipe.rules.mesh = kind.name;
+    kind.dropped = tree.dropped;
+    for (int band = 0; tree.colours && band < kBands; ++band) {
+      kind.leaf[static_cast<std::size_t>(band)].reflectance = tree.colours->reflectance[band];
+      kind.leaf[static_cast<std::size_t>(band)].transmittance = tree.colours->transmittance[band];
+    }
+    plant.cards[i] = {.before = tree.card_area, .after = tree.cut_area};
+    plant.hows.push_back(tree.how);
+    kind.mesh = std::make_shared<const TreeMesh>(std::move(tree.mesh));
+  }
+}
+
 Plant plantOf(const PlantOptions& options, const RunOptions& run) {
   Plant plant;
+  constexpr LeafOptics kLeaf{.reflectance = 0.475f, .transmittance = 0.475f};  // that of scene files without others
+  plant.kinds.front().leaf.fill(kLeaf);
   if (options.input == kRandomCrown) {
-    plant.kind.name = kRandomCrown;
-    plant.kind.mesh = std::make_shared<const TreeMesh>(randomCrownOf(options, run.seed));
+    plant.kinds.front().name = kRandomCrown;
+    plant.kinds.front().mesh = std::make_shared<const TreeMesh>(randomCrownOf(options, run.seed));
     plant.source = fmt::format("{}, seed {}", kRandomCrown, run.seed);
   } else if (isGrown(options.input)) {
     const std::string& name = options.input.empty() ? options.species : options.input;
-    plant.kind = grownKind(name, run.seed);
+    const BandOptics leaf = plant.kinds.front().leaf;
+    plant.kinds.front() = grownKind(name, run.seed);
+    plant.kinds.front().leaf = leaf;
     plant.source = fmt::format("{}, seed {}", name, run.seed);
   } else {
-    ImportedTree imported = importTree(options.input, options.rules);
-    plant.kind.name = fs::path(options.input).stem().string();
-    plant.kind.recipe = {.species = {}, .file = options.input, .rules = options.rules};
-    plant.kind.dropped = imported.dropped;
-    plant.kind.mesh = std::make_shared<const TreeMesh>(std::move(imported.mesh));
-    plant.source = options.input;
-    plant.how = imported.how;
+    takeFile(plant, options);
   }
-  constexpr LeafOptics kLeaf{.reflectance = 0.475f, .transmittance = 0.475f};  // that of scene files without others
-  plant.kind.leaf.fill(kLeaf);
   return plant;
 }
 
@@ -119,47 +163,75 @@ void writeTree(const std::string& file, const TreeMesh& mesh) {
 void requireOutput(const PlantOptions& options) {
   if (options.output.empty()) return;
   std::vector<std::string> endings{".glb", ".gltf"};
-  if (options.stand.kind.empty())
-    endings.insert(endings.end(), {".obj", ".ply"});
-  else
-    endings.emplace_back(".toml");
+  if (options.stand.kind.empty()) endings.insert(endings.end(), {".obj", ".ply"});
+  if (!options.stand.kind.empty() || isFile(options.input)) endings.emplace_back(".toml");
   const bool known = std::ranges::find(endings, fs::path(options.output).extension().string()) != endings.end();
   require(known, "output file", options.output,
           fmt::format("named with one of the extensions {}", fmt::join(endings, " ")));
   requireWritable(options.output);
 }
 
-int runPlant(PlantOptions options, const RunOptions& run) {
+// Of a file: a stand, or the tree alone.
+Scene sceneOf(const Plant& plant) {
+  Scene scene;
+  scene.name = fs::path(plant.source).stem().string();
+  scene.origin = plant.source;
+  scene.kinds = plant.kinds;
+  scene.stand = plant.stand;
+  return scene;
+}
+
+int runPlant(const PlantOptions options, const RunOptions& run) {
   if (options.list) {
     for (const std::string& name : speciesNames()) fmt::print("{}\n", name);
     return 0;
   }
   if (!options.write_species.empty()) return writeSpecies(options.write_species[0], options.write_species[1]);
+  if (!options.gallery.empty()) {
+    std::vector<std::string> files = options.gallery_files;
+    if (!options.input.empty()) files.insert(files.begin(), options.input);
+    writeGallery(options.gallery, files, options.import.rules(), run);
+    if (run.json)
+      fmt::print("{}\n", nlohmann::ordered_json{{"gallery", options.gallery}}.dump(2));
+    else
+      fmt::print("wrote {}\n", options.gallery);
+    return 0;
+  }
   if (options.input == kTurbidEllipsoid) return writeTurbidEllipsoid(options, run);
   requireOutput(options);
   if (!options.thumbnail.empty()) requireNamed(options.thumbnail, ".png");
-  options.rules.up = options.up == "y"   ? ImportRules::Up::y
-                     : options.up == "z" ? ImportRules::Up::z
-                                         : ImportRules::Up::of_format;
   const Plant plant = plantOf(options, run);
-  const TreeMesh& mesh = *plant.kind.mesh;
+  const TreeMesh& mesh = *plant.kinds.front().mesh;
   std::optional<Scene> stand;
-  if (!options.stand.kind.empty()) stand = plantStand(options.stand, plant.kind, run.seed);
+  if (plant.isStand() && !options.stand.kind.empty())
+    throw InvalidInput(options.input + ": is a stand of instances: must be one of its trees for --stand (--mesh \"" +
+                       plant.kinds.front().name + "\")");
+  if (!options.stand.kind.empty()) stand = plantStand(options.stand, plant.kinds.front(), run.seed);
+  if (plant.isStand() || (!stand && fs::path(options.output).extension() == ".toml")) stand = sceneOf(plant);
   if (!options.output.empty() && stand) writeStand(options.output, *stand);
   if (!options.output.empty() && !stand) writeTree(options.output, mesh);
   if (!options.thumbnail.empty()) writeThumbnail(options.thumbnail, mesh);
 
-  const PlantReport report(mesh, plant.source, plant.how, plant.kind.dropped);
+  std::vector<PlantReport> reports;
+  for (std::size_t i = 0; i < plant.kinds.size(); ++i)
+    reports.emplace_back(*plant.kinds[i].mesh,
+                         plant.isStand() ? plant.source + ", " + plant.kinds[i].name : plant.source, plant.hows[i],
+                         plant.kinds[i].dropped, plant.cards[i]);
   double stand_area = 0.;  // of all leaves [m^2]
   if (stand)
     for (const Placement& tree : stand->stand.trees) stand_area += leafArea(*stand->kindOf(tree).mesh);
   if (run.json) {
-    nlohmann::ordered_json result = report.json();
+    nlohmann::ordered_json result = reports.front().json();
     if (stand) result["stand"] = {{"trees", stand->stand.trees.size()}, {"leaf_area_m2", stand_area}};
+    for (std::size_t i = 0; plant.isStand() && i < reports.size(); ++i) {
+      nlohmann::ordered_json kind{{"name", plant.kinds[i].name}};
+      kind.update(reports[i].json());
+      result["stand"]["kinds"].push_back(kind);
+    }
     fmt::print("{}\n", result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return 0;
   }
-  fmt::print("{}", report.text());
+  for (const PlantReport& report : reports) fmt::print("{}", report.text());
   if (stand)
     fmt::print("  stand          {} trees of {} kinds, {:.4g} m2 of leaves\n", stand->stand.trees.size(),
                stand->kinds.size(), stand_area);
@@ -218,10 +290,11 @@ void addPlant(CLI::App& app, RunOptions& options, int& status) {
   auto plant = std::make_shared<PlantOptions>();
   CLI::App* command =
       addCommand(app, options, "plant", "Grow a tree or a stand of trees, or read one; tell its leaves and write it");
-  CLI::Option* input = command->add_option("input", plant->input,
-                                           "A species to grow by its name or its parameter file (.toml), a mesh to "
-                                           "read (.obj, .ply, .gltf, .glb), or a test "
-                                           "object: random_crown, or turbid_ellipsoid into a .vdb");
+  CLI::Option* input = command->add_option(
+      "input", plant->input,
+      "A species to grow by its name or its parameter file (.toml), a mesh to "
+      "read (.obj, .ply, .gltf, .glb, or leaves in lines "
+      "radius x y z nx ny nz: .txt, .leaves), or a test object: random_crown, or turbid_ellipsoid into a .vdb");
   command->add_option("--species", plant->species,
                       "What to grow, as above (default cherry); --seed grows another one of it");
   command->add_flag("--list", plant->list, "Print the names of the species there are");
@@ -229,17 +302,16 @@ void addPlant(CLI::App& app, RunOptions& options, int& status) {
       ->add_option("--write-species", plant->write_species, "NAME FILE.toml: write a species' parameters, to be edited")
       ->expected(2);
   command->add_option("-o,--output", plant->output,
-                      "File to write: .obj, with its .mtl beside it, .ply, .glb or .gltf");
+                      "File to write: .obj, with its .mtl beside it, .ply, .glb, .gltf, or of a file a scene: .toml");
   command->add_option("--thumbnail", plant->thumbnail, "A small picture to write: .png");
-  command->add_option("--leaf", plant->rules.leaf,
-                      "Materials or groups of the mesh that are leaves, such as 'leaf*'; '*' takes all");
-  command->add_option("--wood", plant->rules.wood, "Materials or groups of the mesh that are wood");
-  command->add_option("--scale", plant->rules.scale, "Metres per unit of the mesh (default 1)")
-      ->check(numberIn(1e-9, 1e9, "in [1e-9, 1e9]"));
-  command->add_option("--up", plant->up, "Upward axis of the mesh: z or y (default: y of glTF, else z)")
-      ->check(CLI::IsMember({"z", "y"}));
+  command->add_option(
+      "--gallery", plant->gallery,
+      "Draw all species, and the mesh files and scenes that follow, on one sheet with names: a .png file");
+  command->add_option("files", plant->gallery_files, "More files for --gallery")->needs("--gallery");
+  addImportOptions(*command, plant->import);
   command->get_option("--species")->excludes(input);
-  for (const char* of_input : {"--leaf", "--wood", "--scale", "--up"}) command->get_option(of_input)->needs(input);
+  for (const char* of_input : {"--leaf", "--wood", "--scale", "--unit", "--up", "--cards", "--mesh"})
+    command->get_option(of_input)->needs(input);
   addStandOptions(*command, *plant);
   addTestObjectOptions(*command, *plant);
   command->callback([plant, &options, &status] { status = runPlant(*plant, options); });

@@ -13,11 +13,13 @@
 
 namespace sunfleck::apps {
 
-PlantReport::PlantReport(const TreeMesh& mesh, std::string source, std::string how, const Dropped& dropped)
+PlantReport::PlantReport(const TreeMesh& mesh, std::string source, std::string how, const Dropped& dropped,
+                         const CardAreas& cards)
     : mesh_(mesh),
       source_(std::move(source)),
       how_(std::move(how)),
       dropped_(dropped),
+      cards_(cards),
       area_(sunfleck::leafArea(mesh)) {
   const DeepOpacityMap overhead(mesh, {0.f, 0.f, -1.f}, 512);
   std::size_t covered = 0;
@@ -37,18 +39,21 @@ PlantReport::PlantReport(const TreeMesh& mesh, std::string source, std::string h
 
 nlohmann::ordered_json PlantReport::json() const {
   const LeafInclination lean = leafInclination(mesh_);
-  return {{"leaves", mesh_.leaf_count},
-          {"leaf_triangles", mesh_.leaf_triangles.size()},
-          {"leaf_area_m2", area_},
-          {"wood_triangles", mesh_.wood_triangles.size()},
-          {"lai", lai_},
-          {"units", "m"},
-          {"mean_depth", mean_depth_},
-          {"mean_thickness", mean_thickness_},
-          {"dropped_leaf_triangles", dropped_.leaf_triangles},
-          {"dropped_wood_triangles", dropped_.wood_triangles},
-          {"leaf_angle_shares", lean.shares},
-          {"mean_leaf_angle_deg", lean.mean_angle * 180. / std::numbers::pi}};
+  nlohmann::ordered_json all{{"leaves", mesh_.leaf_count},
+                             {"leaf_triangles", mesh_.leaf_triangles.size()},
+                             {"leaf_area_m2", area_},
+                             {"wood_triangles", mesh_.wood_triangles.size()},
+                             {"lai", lai_},
+                             {"units", "m"},
+                             {"mean_depth", mean_depth_},
+                             {"mean_thickness", mean_thickness_},
+                             {"dropped_leaf_triangles", dropped_.leaf_triangles},
+                             {"dropped_wood_triangles", dropped_.wood_triangles},
+                             {"leaf_angle_shares", lean.shares},
+                             {"mean_leaf_angle_deg", lean.mean_angle * 180. / std::numbers::pi}};
+  if (dropped_.doubled > 0) all["doubled_leaf_triangles"] = dropped_.doubled;
+  if (cards_.before > 0.) all["cards"] = {{"area_before_m2", cards_.before}, {"area_after_m2", cards_.after}};
+  return all;
 }
 
 std::string PlantReport::text() const {
@@ -64,6 +69,11 @@ std::string PlantReport::text() const {
   if (dropped_.leaf_triangles + dropped_.wood_triangles > 0)
     line("  dropped        {} leaf and {} wood triangles of no area\n", dropped_.leaf_triangles,
          dropped_.wood_triangles);
+  if (dropped_.doubled > 0)
+    line("  doubled        {} leaf triangles that the file holds twice count once\n", dropped_.doubled);
+  if (cards_.before > 0.)
+    line("  cards          {:.4g} m2 before, {:.4g} m2 of leaf after: {:.3g} %\n", cards_.before, cards_.after,
+         100. * cards_.after / cards_.before);
   line("  size           {:.3g} x {:.3g} x {:.3g} m\n", size.x, size.y, size.z);
   line("  leaf area      {:.3g} times the crown's projection on the ground\n", lai_);
   line("  from overhead  a leaf lies {:.2f} leaves deep in {:.2f} on average\n", mean_depth_, mean_thickness_);

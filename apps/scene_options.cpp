@@ -15,7 +15,8 @@ namespace sunfleck::apps {
 
 void addSceneOptions(CLI::App& command, SceneOptions& options) {
   command.add_option("scene", options.scene,
-                     "A scene (.toml, see: sunfleck --help scene), a mesh (.obj, .ply) or a built-in scene: a species "
+                     "A scene (.toml, see: sunfleck --help scene), a mesh (.obj, .ply, .gltf, .glb, .txt) or a "
+                     "built-in scene: a species "
                      "(cherry, maple, ...), with 1, 16 or 64 for as many trees, periodic, slab (default cherry)");
   const std::string group = "Scene";
   command
@@ -61,17 +62,7 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
       ->expected(2)
       ->check(numberIn(1e-6, 1e6, "in [1e-6, 1e6] m"))
       ->group(group);
-  command
-      .add_option("--leaf", options.leaf,
-                  "Materials or groups of a mesh that are leaves, such as 'leaf*'; '*' takes all")
-      ->group(group);
-  command.add_option("--wood", options.wood, "Materials or groups of a mesh that are wood")->group(group);
-  command.add_option("--scale", options.scale, "Metres per unit of the mesh (default 1)")
-      ->check(numberIn(1e-9, 1e9, "in [1e-9, 1e9]"))
-      ->group(group);
-  command.add_option("--up", options.up, "Upward axis of the mesh: z or y (default: y of glTF, else z)")
-      ->check(CLI::IsMember({"z", "y"}))
-      ->group(group);
+  addImportOptions(command, options.import);
 }
 
 namespace {
@@ -80,12 +71,8 @@ namespace {
 void requireMeshFor(const SceneOptions& options) {
   const std::filesystem::path extension = std::filesystem::path(options.scene).extension();
   if (!extension.empty() && extension != ".toml") return;
-  const char* given = !options.leaf.empty()   ? "--leaf"
-                      : !options.wood.empty() ? "--wood"
-                      : options.scale != 1.f  ? "--scale"
-                      : !options.up.empty()   ? "--up"
-                                              : nullptr;
-  if (given) throw InvalidInput(fmt::format("{}: must be for a mesh file, not for {}", given, options.scene));
+  if (const char* given = options.import.given())
+    throw InvalidInput(fmt::format("{}: must be for a mesh file, not for {}", given, options.scene));
 }
 
 void placeSun(const SceneOptions& options, Sun& sun) {
@@ -124,14 +111,7 @@ void changeLeaves(const SceneOptions& options, Scene& scene) {
 
 Scene readScene(const SceneOptions& options, Media media, Treeless treeless) {
   requireMeshFor(options);
-  ImportRules rules;
-  rules.leaf = options.leaf;
-  rules.wood = options.wood;
-  rules.scale = options.scale;
-  rules.up = options.up == "y"   ? ImportRules::Up::y
-             : options.up == "z" ? ImportRules::Up::z
-                                 : ImportRules::Up::of_format;
-  Scene scene = sunfleck::readScene(options.scene, rules);
+  Scene scene = sunfleck::readScene(options.scene, options.import.rules());
   if (media == Media::refused && !scene.media.empty())
     throw InvalidInput(options.scene + ": has a [medium], which trace alone takes");
   if (treeless == Treeless::refused && scene.stand.trees.empty())

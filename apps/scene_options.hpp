@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/import_options.hpp"
 #include "apps/leaf_options.hpp"
 #include "apps/run_options.hpp"
-#include "plants/import.hpp"
 #include "render/scene.hpp"
 
 namespace sunfleck::apps {
@@ -14,9 +14,7 @@ namespace sunfleck::apps {
 // The scene a command works on, and what the command line changes in it.
 struct SceneOptions {
   std::string scene = "cherry";
-  std::vector<std::string> leaf, wood;  // patterns for mesh files
-  float scale = 1.f;
-  std::string up;
+  ImportOptions import;         // of a mesh file
   std::optional<float> albedo;  // reflectance = transmittance = albedo / 2 in all bands
   LeafOptions leaves;           // in place of it
   std::optional<double> sun_zenith_deg, sun_azimuth_deg;

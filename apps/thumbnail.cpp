@@ -14,7 +14,7 @@
 namespace sunfleck::apps {
 namespace {
 
-constexpr int kPixels = 256;
+constexpr int kPixels = kThumbnailPixels;
 constexpr int kAcross = 3;  // samples along each side of a pixel
 constexpr glm::vec3 kLeaf(110.f, 165.f, 60.f), kWood(125.f, 95.f, 65.f),
     kBehind(238.f, 242.f, 246.f);  // sRGB, 0 .. 255
@@ -29,7 +29,7 @@ Camera cameraOn(const Bounds& box) {
 
 }  // namespace
 
-void writeThumbnail(const std::filesystem::path& file, const TreeMesh& mesh) {
+std::vector<std::uint8_t> thumbnail(const TreeMesh& mesh) {
   const RayScene scene(mesh, Stand{}, true);
   const Camera camera = cameraOn(bounds(mesh));
   const PixelSteps steps = pixelSteps(camera);
@@ -64,7 +64,11 @@ void writeThumbnail(const std::filesystem::path& file, const TreeMesh& mesh) {
   for (const glm::vec3& sum : sums)
     for (int band = 0; band < 3; ++band)
       bytes.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(sum[band] / (kAcross * kAcross), 0.f, 255.f))));
-  writePng(file, kPixels, kPixels, bytes);
+  return bytes;
+}
+
+void writeThumbnail(const std::filesystem::path& file, const TreeMesh& mesh) {
+  writePng(file, kPixels, kPixels, thumbnail(mesh));
 }
 
 }  // namespace sunfleck::apps

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/finished_mesh.hpp"
 #include "core/require.hpp"
@@ -15,6 +16,10 @@ namespace {
 
 std::size_t dropFlat(const TreeMesh& mesh, std::vector<glm::uvec3>& triangles) {
   return std::erase_if(triangles, [&](const glm::uvec3& t) { return !hasArea(triangleArea(mesh, t)); });
+}
+
+double shareOf(const std::vector<double>& shares, std::size_t triangle) {
+  return shares.empty() ? 1. : shares[triangle];
 }
 
 void checkCuts(const TreeMesh& mesh, const std::string& source) {
@@ -30,23 +35,27 @@ void checkCuts(const TreeMesh& mesh, const std::string& source) {
   }
 }
 
-// Drops leaf triangles of no area, and those whose mask leaves nothing of them, with their cuts.
-std::size_t dropCutFlat(TreeMesh& mesh, const std::vector<double>& shares) {
+// Drops leaf triangles of no area, and those whose mask leaves nothing of them, with their cuts and their leaves.
+std::size_t dropFlatLeaves(TreeMesh& mesh, const std::vector<double>& shares) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i) {
-    if (!hasArea(triangleArea(mesh, mesh.leaf_triangles[i]) * shares[i])) continue;
+    if (!hasArea(triangleArea(mesh, mesh.leaf_triangles[i]) * shareOf(shares, i))) continue;
     mesh.leaf_triangles[kept] = mesh.leaf_triangles[i];
-    mesh.leaf_cuts[kept++] = mesh.leaf_cuts[i];
+    if (!mesh.leaf_cuts.empty()) mesh.leaf_cuts[kept] = mesh.leaf_cuts[i];
+    if (!mesh.leaf_of_triangle.empty()) mesh.leaf_of_triangle[kept] = mesh.leaf_of_triangle[i];
+    ++kept;
   }
   const std::size_t dropped = mesh.leaf_triangles.size() - kept;
   mesh.leaf_triangles.resize(kept);
-  mesh.leaf_cuts.resize(kept);
+  if (!mesh.leaf_cuts.empty()) mesh.leaf_cuts.resize(kept);
+  if (!mesh.leaf_of_triangle.empty()) mesh.leaf_of_triangle.resize(kept);
   return dropped;
 }
 
-// The share of each leaf triangle that its mask leaves. Most of a tree's cards bear the same part of the image, of
-// which the share is computed once.
+// The share of each leaf triangle that its mask leaves; nothing where there are no masks. Most of a tree's cards bear
+// the same part of the image, of which the share is computed once.
 std::vector<double> leafShares(const TreeMesh& mesh) {
+  if (mesh.leaf_cuts.empty()) return {};
   std::vector<double> shares(mesh.leaf_triangles.size(), 1.);
   std::map<std::tuple<std::uint32_t, float, float, float, float, float, float>, double> known;
   for (std::size_t i = 0; i < mesh.leaf_cuts.size(); ++i) {
@@ -65,13 +74,22 @@ std::uint32_t rootOf(std::vector<std::uint32_t>& parent, std::uint32_t vertex) {
   return vertex;
 }
 
-void groupConnectedLeaves(TreeMesh& mesh) {
+// Triangles of one leaf by `given`, where it is there, stay together.
+void groupConnectedLeaves(TreeMesh& mesh, const std::vector<std::uint32_t>& given) {
+  constexpr std::uint32_t unnamed = ~0u;
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
   for (const glm::uvec3& t : mesh.leaf_triangles)
     for (int corner = 1; corner < 3; ++corner) parent[rootOf(parent, t[corner])] = rootOf(parent, t[0]);
+  if (!given.empty()) {
+    std::vector<std::uint32_t> vertex_of(std::size_t{*std::ranges::max_element(given)} + 1, unnamed);
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      std::uint32_t& vertex = vertex_of[given[i]];
+      if (vertex == unnamed) vertex = mesh.leaf_triangles[i].x;
+      parent[rootOf(parent, mesh.leaf_triangles[i].x)] = rootOf(parent, vertex);
+    }
+  }
 
-  constexpr std::uint32_t unnamed = ~0u;
   std::vector<std::uint32_t> leaf_of_root(mesh.vertices.size(), unnamed);
   mesh.leaf_of_triangle.clear();
   mesh.leaf_of_triangle.reserve(mesh.leaf_triangles.size());
@@ -97,14 +115,17 @@ Dropped finish(TreeMesh& mesh, const std::string& source) {
   requireIndices(mesh, mesh.leaf_triangles, source + ": leaf");
   requireIndices(mesh, mesh.wood_triangles, source + ": wood");
   checkCuts(mesh, source);
-  const Dropped dropped{.leaf_triangles = mesh.leaf_cuts.empty() ? dropFlat(mesh, mesh.leaf_triangles)
-                                                                 : dropCutFlat(mesh, leafShares(mesh)),
+  if (mesh.leaf_of_triangle.size() != mesh.leaf_triangles.size()) mesh.leaf_of_triangle.clear();
+  for (const std::uint32_t leaf : mesh.leaf_of_triangle)
+    if (leaf >= mesh.leaf_triangles.size())
+      require(false, source + ": leaf of a triangle", leaf, "below the number of leaf triangles");
+  const Dropped dropped{.leaf_triangles = dropFlatLeaves(mesh, leafShares(mesh)),
                         .wood_triangles = dropFlat(mesh, mesh.wood_triangles)};
   if (mesh.leaf_triangles.empty())
     throw InvalidInput(source + ": has no leaves (" + std::to_string(dropped.leaf_triangles) +
                        " leaf triangles of no area, " + std::to_string(mesh.wood_triangles.size()) +
                        " wood triangles): at least one leaf with an area is needed");
-  groupConnectedLeaves(mesh);
+  groupConnectedLeaves(mesh, std::vector<std::uint32_t>(std::move(mesh.leaf_of_triangle)));
   return dropped;
 }
 
@@ -119,7 +140,7 @@ std::vector<double> leafAreas(const TreeMesh& mesh) {
   std::vector<double> areas(mesh.leaf_count, 0.);
   const std::vector<double> shares = leafShares(mesh);
   for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i)
-    areas[mesh.leaf_of_triangle[i]] += shares[i] * triangleArea(mesh, mesh.leaf_triangles[i]);
+    areas[mesh.leaf_of_triangle[i]] += shareOf(shares, i) * triangleArea(mesh, mesh.leaf_triangles[i]);
   return areas;
 }
 
@@ -127,7 +148,7 @@ double leafArea(const TreeMesh& mesh) {
   double area = 0.;
   const std::vector<double> shares = leafShares(mesh);
   for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i)
-    area += shares[i] * triangleArea(mesh, mesh.leaf_triangles[i]);
+    area += shareOf(shares, i) * triangleArea(mesh, mesh.leaf_triangles[i]);
   return area;
 }
 

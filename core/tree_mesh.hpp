@@ -29,11 +29,13 @@ struct TreeMesh {
 struct Dropped {
   std::size_t leaf_triangles = 0;  // leaf triangles of no area, or cut away
   std::size_t wood_triangles = 0;  // wood triangles of no area
+  std::size_t doubled = 0;         // leaf triangles that a file held twice, once for each side
 };
 
 // Makes a mesh safe to use: throws InvalidInput("<source>: ...") on an index out of range, a coordinate that is not
 // finite or beyond 1e4 m, or a mesh without leaves; drops triangles of no area, also those that masks leave nothing of;
-// and tells leaves apart: leaf triangles that share a vertex belong to one leaf. Masks are checked as well.
+// and tells leaves apart: leaf triangles that share a vertex belong to one leaf, and those that have the same number in
+// `leaf_of_triangle`, where it has one for each (below the number of leaf triangles). Masks are checked as well.
 Dropped finish(TreeMesh& mesh, const std::string& source);
 
 double triangleArea(const TreeMesh& mesh, const glm::uvec3& triangle);  // whole, whatever a mask cuts away [m^2]

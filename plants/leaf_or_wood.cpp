@@ -1,12 +1,15 @@
 #include "plants/detail/leaf_or_wood.hpp"
 
 #include <fnmatch.h>
+#include <strings.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
 #include "core/require.hpp"
 #include "plants/detail/input_file.hpp"
@@ -20,14 +23,28 @@ constexpr std::array<std::string_view, 14> kWoodWords{"wood",     "bark",  "trun
                                                       "branches", "stem",  "stems", "twig",   "twigs",
                                                       "limb",     "limbs", "bough", "boughs"};
 
-bool matches(const std::string& pattern, const std::string& name) {
+enum class Match { none, by_pattern, exact };
+
+Match matches(const std::string& pattern, const std::string& name) {
+  if (strcasecmp(pattern.c_str(), name.c_str()) == 0) return Match::exact;
   const bool whole = pattern.find_first_of("*?[") != std::string::npos;
-  return fnmatch((whole ? pattern : "*" + pattern + "*").c_str(), name.c_str(), FNM_CASEFOLD) == 0;
+  const bool fits = fnmatch((whole ? pattern : "*" + pattern + "*").c_str(), name.c_str(), FNM_CASEFOLD) == 0;
+  return fits ? Match::by_pattern : Match::none;
 }
 
-std::vector<std::string> namesOf(const Part& part) {
-  std::vector<std::string> names{part.material};
-  names.insert(names.end(), part.groups.begin(), part.groups.end());
+// In the order in which they are asked: material, groups, object.
+std::vector<std::string_view> namesOf(const Part& part) {
+  std::vector<std::string_view> names{part.material};
+  if (part.one_group) {
+    names.push_back(part.groups);
+  } else {
+    for (std::string_view left = part.groups; !left.empty();) {
+      const std::size_t start = std::min(left.find_first_not_of(" \t"), left.size());
+      const std::size_t end = std::min(left.find_first_of(" \t", start), left.size());
+      names.push_back(left.substr(start, end - start));
+      left.remove_prefix(end);
+    }
+  }
   names.push_back(part.object);
   std::erase(names, "");
   return names;
@@ -37,21 +54,15 @@ bool isAll(const std::vector<std::string>& patterns) {
   return std::find(patterns.begin(), patterns.end(), "*") != patterns.end();
 }
 
-// Whether a pattern other than "*" matches a name of the part.
-bool named(const std::vector<std::string>& patterns, const Part& part) {
-  for (const std::string& name : namesOf(part))
-    for (const std::string& pattern : patterns)
-      if (pattern != "*" && matches(pattern, name)) return true;
-  return false;
-}
-
 std::string quoted(const Part& part) {
   std::string text;
-  const auto add = [&](const std::string& what, const std::string& name) {
+  const auto add = [&](const std::string& what, std::string_view name) {
     if (!name.empty()) text += (text.empty() ? "" : ", ") + what + " \"" + shown(name) + "\"";
   };
   add("material", part.material);
-  for (const std::string& group : part.groups) add("group", group);
+  Part of_groups = part;
+  of_groups.material = of_groups.object = {};
+  for (const std::string_view group : namesOf(of_groups)) add("group", group);
   add("object", part.object);
   return text.empty() ? "no name" : text;
 }
@@ -110,7 +121,7 @@ std::optional<Kind> kindByWords(std::string_view name) {
 
 // The material decides; where it says nothing, the groups, then the object.
 std::optional<Kind> kindByNames(const Part& part) {
-  for (const std::string& name : namesOf(part))
+  for (const std::string_view name : namesOf(part))
     if (const std::optional<Kind> kind = kindByWords(name)) return kind;
   return std::nullopt;
 }
@@ -128,21 +139,91 @@ bool isBrown(const glm::vec3& colour) {
                      ": say which with --leaf NAME or --wood NAME, or --leaf '*' when everything is leaf");
 }
 
+// The user's patterns and what they have matched so far.
+class Patterns {
+ public:
+  Patterns(const std::vector<std::string>& patterns, const char* kind)
+      : patterns_(patterns), kind_(kind), used_(patterns.size(), false) {}
+
+  // The best match of a name with a pattern other than "*".
+  Match match(const std::string& name) {
+    Match best = Match::none;
+    for (std::size_t i = 0; i < patterns_.size(); ++i) {
+      if (patterns_[i] == "*") continue;
+      const Match match = matches(patterns_[i], name);
+      used_[i] = used_[i] || match != Match::none;
+      best = std::max(best, match);
+    }
+    return best;
+  }
+
+  void requireUsed(const std::vector<Part>& parts, const std::string& source) const {
+    for (std::size_t i = 0; i < patterns_.size(); ++i)
+      if (!used_[i] && patterns_[i] != "*")
+        throw InvalidInput(source + ": " + kind_ + " \"" + shown(patterns_[i]) +
+                           "\": must match a material, group or object; it has " + listed(parts));
+  }
+
+ private:
+  const std::vector<std::string>& patterns_;
+  const char* kind_;
+  std::vector<bool> used_;
+};
+
+// What a part's names are by the rules: the first name that a pattern matches decides, and of patterns that match the
+// same name the one that is the whole name.
+class RuleJudge {
+ public:
+  RuleJudge(const ImportRules& rules, const std::string& source)
+      : leaf_(rules.leaf, "leaf"), wood_(rules.wood, "wood"), source_(source) {}
+
+  std::optional<Kind> kindOf(const Part& part) {
+    std::optional<Kind> decided;
+    for (const std::string_view name : namesOf(part)) {
+      const auto [leaf, wood] = matchesOf(name);
+      if (decided || leaf == wood) {
+        if (!decided && leaf != Match::none)
+          refuse(source_, "the rules name " + quoted(part) + " as both leaf and wood", "");
+        continue;
+      }
+      decided = leaf > wood ? Kind::leaf : Kind::wood;
+    }
+    return decided;
+  }
+
+  void requireUsed(const std::vector<Part>& parts) const {
+    leaf_.requireUsed(parts, source_);
+    wood_.requireUsed(parts, source_);
+  }
+
+ private:
+  // Each name is asked once: a file may have as many parts as leaves, of one material.
+  std::pair<Match, Match> matchesOf(std::string_view name) {
+    const auto [known, is_new] = known_.try_emplace(name);
+    if (is_new) known->second = {leaf_.match(std::string(name)), wood_.match(std::string(name))};
+    return known->second;
+  }
+
+  Patterns leaf_, wood_;
+  std::unordered_map<std::string_view, std::pair<Match, Match>> known_;
+  const std::string& source_;
+};
+
 Verdict tellByRules(const std::vector<Part>& parts, const ImportRules& rules, const std::string& source) {
   Verdict verdict{.kinds = {}, .how = "by the given names"};
-  const bool rest_is_leaf = isAll(rules.leaf) || (rules.leaf.empty() && !isAll(rules.wood));
-  const bool rest_is_wood = isAll(rules.wood) || (rules.wood.empty() && !isAll(rules.leaf));
   if (isAll(rules.leaf) && isAll(rules.wood)) refuse(source, "everything is asked to be both leaf and wood", "");
-  bool any_named = isAll(rules.leaf) || isAll(rules.wood);
+  std::optional<Kind> rest;
+  if (isAll(rules.leaf) || (rules.leaf.empty() && !isAll(rules.wood))) rest = Kind::leaf;
+  if (isAll(rules.wood) || (rules.wood.empty() && !isAll(rules.leaf))) rest = Kind::wood;
+  RuleJudge judge(rules, source);
+  const Part* open = nullptr;
   for (const Part& part : parts) {
-    const bool leaf = named(rules.leaf, part), wood = named(rules.wood, part);
-    if (leaf && wood) refuse(source, "the rules name " + quoted(part) + " as both leaf and wood", "");
-    if (!leaf && !wood && !rest_is_leaf && !rest_is_wood)
-      refuse(source, "the rules leave open what " + quoted(part) + " is", "");
-    any_named = any_named || leaf || wood;
-    verdict.kinds.push_back(leaf || (!wood && rest_is_leaf) ? Kind::leaf : Kind::wood);
+    const std::optional<Kind> kind = judge.kindOf(part);
+    if (!kind && !rest && !open) open = &part;
+    verdict.kinds.push_back(kind.value_or(rest.value_or(Kind::leaf)));
   }
-  if (!any_named) refuse(source, "no name matches the rules; it has " + listed(parts), "");
+  judge.requireUsed(parts);
+  if (open) refuse(source, "the rules leave open what " + quoted(*open) + " is", "");
   return verdict;
 }
 

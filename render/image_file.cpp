@@ -35,12 +35,45 @@ std::vector<std::size_t> shownChannels(const Image& image) {
 
 constexpr int kMostWidth = 8192, kMostHeight = 4096;  // of a picture that is read
 
-Image read(const fs::path& file, const std::function<void(const detail::StoredImage&)>& check) {
+Image read(const fs::path& file, std::string_view bytes, const std::function<void(const detail::StoredImage&)>& check) {
   try {
-    return detail::imageCodec().read(file, check);
+    return detail::imageCodec().read(file, bytes, check);
   } catch (const std::runtime_error& e) {
     throw InvalidInput(file.string() + ": cannot be read: " + e.what());
   }
+}
+
+// `also` may refuse what is told of the image, before any pixel is read.
+Image decoded(const fs::path& file, std::string_view bytes, ImageValues values,
+              const std::function<void(const detail::StoredImage&)>& also) {
+  const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": cannot be read: " + why); };
+  std::error_code failure;
+  if (bytes.empty() && !fs::is_regular_file(file, failure)) refuse("there is no such file");
+  if (!bytes.empty() && !file.has_extension()) refuse("its format is not told");
+  detail::StoredImage stored;
+  Image image = read(file, bytes, [&](const detail::StoredImage& of_file) {
+    stored = of_file;
+    if (stored.width < 1 || stored.height < 1 || stored.width > kLargestImage || stored.height > kLargestImage ||
+        stored.depth > 1)
+      refuse("it must be a flat image of at most 8192 x 8192 pixels");
+    if (stored.channels.empty() || stored.channels.size() > 4) refuse("it must have one to four channels");
+    if (also) also(stored);
+  });
+  const std::size_t channels = stored.channels.size();
+  const bool has_alpha = stored.alpha_channel >= 0 || channels == 2 || channels == 4;
+  const std::size_t alpha = !has_alpha                  ? channels
+                            : stored.alpha_channel >= 0 ? static_cast<std::size_t>(stored.alpha_channel)
+                                                        : channels - 1;
+  const std::size_t colours = channels - (has_alpha ? 1 : 0);
+  for (std::size_t c = 0, colour = 0; c < channels; ++c)
+    image.channels[c] = c == alpha ? "A" : colours == 3 ? std::string(1, "RGB"[colour++]) : "Y";
+  const bool decode = values == ImageValues::linear && !stored.floating;
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    float& value = image.values[i];
+    if (!std::isfinite(value)) refuse("it holds a value that is not a finite number");
+    if (decode && i % channels != alpha) value = tone_mapping::srgbLight(value);
+  }
+  return image;
 }
 
 }  // namespace
@@ -51,7 +84,7 @@ Image readRadiances(const fs::path& file) {
     throw InvalidInput(file.string() + ": has the extension \"" + file.extension().string() +
                        "\": a picture of radiances must be .exr or .hdr");
   if (!fs::is_regular_file(file)) throw InvalidInput(file.string() + ": must be a file that can be read");
-  return read(file, [&](const detail::StoredImage& stored) {
+  return read(file, {}, [&](const detail::StoredImage& stored) {
     if (stored.width < 1 || stored.width > kMostWidth || stored.height < 1 || stored.height > kMostHeight ||
         stored.depth != 1 || stored.channels.empty() || stored.channels.size() > 64)
       throw InvalidInput(file.string() + ": has " + std::to_string(stored.width) + " x " +
@@ -92,32 +125,23 @@ void writePng(const fs::path& file, int width, int height, std::span<const std::
 }
 
 Image readImage(const fs::path& file, ImageValues values) {
-  const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": cannot be read: " + why); };
+  return decoded(file, {}, values, {});
+}
+
+Image readOpacity(const fs::path& file, std::string_view bytes) {
   std::error_code failure;
-  if (!fs::is_regular_file(file, failure)) refuse("there is no such file");
-  detail::StoredImage stored;
-  Image image = read(file, [&](const detail::StoredImage& of_file) {
-    stored = of_file;
-    if (stored.width < 1 || stored.height < 1 || stored.width > kLargestImage || stored.height > kLargestImage ||
-        stored.depth > 1)
-      refuse("it must be a flat image of at most 8192 x 8192 pixels");
-    if (stored.channels.empty() || stored.channels.size() > 4) refuse("it must have one to four channels");
+  const std::uintmax_t size = bytes.empty() ? fs::file_size(file, failure) : bytes.size();
+  // Pictures of leaves shrink to a tenth, outlines of one colour to a hundredth; files made to burst to a thousandth.
+  constexpr std::uintmax_t kMostGrowth = 400, kSmall = 1u << 22;
+  return decoded(file, bytes, ImageValues::as_they_stand, [&](const detail::StoredImage& stored) {
+    const auto values =
+        static_cast<std::uintmax_t>(stored.width) * static_cast<std::uintmax_t>(stored.height) * stored.channels.size();
+    if (stored.width > kLargestOpacity || stored.height > kLargestOpacity ||
+        (!failure && values > kSmall && values > kMostGrowth * size))
+      throw InvalidInput(file.string() + ": cannot be read: says to be of " + std::to_string(stored.width) + " x " +
+                         std::to_string(stored.height) + " pixels in " + std::to_string(size) +
+                         " bytes: must be at most 4096 x 4096, and 400 values a byte");
   });
-  const std::size_t channels = stored.channels.size();
-  const bool has_alpha = stored.alpha_channel >= 0 || channels == 2 || channels == 4;
-  const std::size_t alpha = !has_alpha                  ? channels
-                            : stored.alpha_channel >= 0 ? static_cast<std::size_t>(stored.alpha_channel)
-                                                        : channels - 1;
-  const std::size_t colours = channels - (has_alpha ? 1 : 0);
-  for (std::size_t c = 0, colour = 0; c < channels; ++c)
-    image.channels[c] = c == alpha ? "A" : colours == 3 ? std::string(1, "RGB"[colour++]) : "Y";
-  const bool decode = values == ImageValues::linear && !stored.floating;
-  for (std::size_t i = 0; i < image.values.size(); ++i) {
-    float& value = image.values[i];
-    if (!std::isfinite(value)) refuse("it holds a value that is not a finite number");
-    if (decode && i % channels != alpha) value = tone_mapping::srgbLight(value);
-  }
-  return image;
 }
 
 std::string pngBytes(const Image& image, const Display& display) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/image.hpp"
 #include "render/tone_mapping.hpp"
@@ -32,6 +33,12 @@ Image readRadiances(const std::filesystem::path& file);
 inline constexpr int kLargestImage = 8192;
 enum class ImageValues { as_they_stand, linear };
 Image readImage(const std::filesystem::path& file, ImageValues values);
+
+// The same of an image that tells how much of a leaf there is, as it stands: `bytes` of a PNG or JPEG, where they are
+// not empty, else those of the file. At most kLargestOpacity pixels wide and high and 400 times as many values as
+// bytes, which files that are made to fill the memory exceed.
+inline constexpr int kLargestOpacity = 4096;
+Image readOpacity(const std::filesystem::path& file, std::string_view bytes);
 
 // The same PNG as bytes, for embedding in a report.
 std::string pngBytes(const Image& image, const Display& display);

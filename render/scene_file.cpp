@@ -40,14 +40,36 @@ void growTree(TreeKind& kind, const std::string& species_name, std::uint64_t see
   kind.name = std::filesystem::path(species_name).stem().string();
 }
 
-void importFile(TreeKind& kind, const std::filesystem::path& file, const ImportRules& rules) {
-  ImportedTree imported = importTree(
-      file, rules, [](const std::filesystem::path& image) { return readImage(image, ImageValues::as_they_stand); });
-  kind.mesh = std::make_shared<const TreeMesh>(std::move(imported.mesh));
+// `keep_optics`: whether those of the kind are the user's, which come before the file's own.
+void takeImported(TreeKind& kind, const std::filesystem::path& file, const ImportRules& rules, ImportedTree imported,
+                  bool keep_optics) {
   kind.source = fmt::format("{} (leaf and wood: {})", file.string(), imported.how);
   kind.dropped = imported.dropped;
   kind.recipe = {.species = {}, .file = file, .rules = rules};
-  kind.name = file.stem().string();
+  kind.name = rules.mesh.empty() ? file.stem().string() : rules.mesh;
+  if (imported.colours && !keep_optics)
+    for (int band = 0; band < kBands; ++band) {
+      LeafOptics& leaf = kind.leaf[static_cast<std::size_t>(band)];
+      leaf.reflectance = imported.colours->reflectance[band];
+      leaf.transmittance = imported.colours->transmittance[band];
+    }
+  kind.mesh = std::make_shared<const TreeMesh>(std::move(imported.mesh));
+}
+
+void importFile(TreeKind& kind, const std::filesystem::path& file, const ImportRules& rules, bool keep_optics) {
+  takeImported(kind, file, rules, importTree(file, rules, readOpacity), keep_optics);
+}
+
+// The scene that a mesh file is: a tree, or a stand of instances.
+void importScene(Scene& scene, const std::filesystem::path& file, const ImportRules& rules) {
+  ImportedStand imported = importStand(file, rules, readOpacity);
+  scene.kinds.assign(imported.kinds.size(), kindWith(kPaperLeaf));
+  for (std::size_t i = 0; i < scene.kinds.size(); ++i) {
+    ImportRules of_kind = rules;
+    if (imported.kinds.size() > 1 || imported.stand != Stand{}) of_kind.mesh = imported.kinds[i].name;
+    takeImported(scene.kinds[i], file, of_kind, std::move(imported.kinds[i].tree), false);
+  }
+  scene.stand = std::move(imported.stand);
 }
 
 // `side` x `side` trees, `spacing` apart, around the origin. Kinds take turns along x and along y.
@@ -65,19 +87,21 @@ std::vector<Placement> square(int side, glm::vec2 spacing, std::size_t kinds) {
 
 // `kind` has the scene's optics.
 void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const LightBands& bands,
-              const std::filesystem::path& folder) {
+              const std::filesystem::path& folder, bool keep_optics) {
   if (tree.has("file") && tree.has("species"))
     throw InvalidInput(scene.origin + ": [tree] has both file and species: must be one of them");
   if (tree.has("file")) {
     ImportRules rules;
     if (tree.has("leaf")) rules.leaf = tree.texts("leaf");
     if (tree.has("wood")) rules.wood = tree.texts("wood");
+    if (tree.has("scale") && tree.has("unit"))
+      throw InvalidInput(scene.origin + ": [tree] has both scale and unit: must be one of them");
     rules.scale = static_cast<float>(tree.number("scale", 1., 1e-9, 1e9, "in [1e-9, 1e9]"));
-    const std::string up = tree.text("up", "");
-    if (tree.has("up") && up != "z" && up != "y")
-      throw InvalidInput(scene.origin + ": tree.up = \"" + up + "\": must be \"z\" or \"y\"");
-    rules.up = up == "y" ? ImportRules::Up::y : up == "z" ? ImportRules::Up::z : ImportRules::Up::of_format;
-    importFile(kind, folder / tree.text("file", ""), rules);
+    if (tree.has("unit")) rules.scale = metresPer(tree.text("unit", ""), scene.origin + ": tree.unit");
+    if (tree.has("up")) rules.up = upwardAxis(tree.text("up", ""), scene.origin + ": tree.up");
+    if (tree.has("cards")) rules.cards = cardsNamed(tree.text("cards", ""), scene.origin + ": tree.cards");
+    rules.mesh = tree.text("mesh", "");
+    importFile(kind, folder / tree.text("file", ""), rules, keep_optics);
   } else {
     const std::string name = tree.text("species", "cherry");
     const bool by_file = std::filesystem::path(name).extension() == ".toml";
@@ -90,14 +114,15 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
 }
 
 void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, const LightBands& bands,
-               const std::filesystem::path& file) {
+               const std::filesystem::path& file, bool keep_optics) {
   const toml::array* several = node ? node->as_array() : nullptr;  // [[tree]]
   const std::size_t count = several ? several->size() : 1;
   if (count == 0) throw InvalidInput(scene.origin + ": tree = []: must be a table [tree], or a [[tree]] for each kind");
   scene.kinds.assign(count, optics);
   for (std::size_t i = 0; i < count; ++i) {
     const toml::node* table = several ? several->get(i) : node;
-    readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), bands, file.parent_path());
+    readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), bands, file.parent_path(),
+             keep_optics);
     for (std::size_t before = 0; before < i; ++before)
       if (scene.kinds[before].name == scene.kinds[i].name)
         throw InvalidInput(fmt::format("{}:{}: tree.name = \"{}\": must differ from that of the other kinds of trees",
@@ -240,12 +265,13 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   detail::SceneTable leaf = section("leaf"), wood = section("wood");
   TreeKind optics = kindWith(kPaperLeaf);
   const LightBands bands = detail::readLightBands(leaf);
+  const bool own_leaf = detail::tellsLeafShares(leaf, "");
   detail::readOptics(optics, leaf, "", wood, "", bands);
   for (const detail::SceneTable* read : {&leaf, &wood}) read->done();
   readGround(scene, section("ground"), file.parent_path());
   if (const toml::node* media = table.get("medium")) detail::readMedia(scene, *media, optics.leaf, bands, file);
   if (scene.media.empty() || table.contains("tree")) {
-    readTrees(scene, table.get("tree"), optics, bands, file);
+    readTrees(scene, table.get("tree"), optics, bands, file, own_leaf);
   } else {
     scene.kinds[0] = optics;
     scene.kinds[0].name = scene.kinds[0].source = "no tree";
@@ -328,13 +354,13 @@ Scene readScene(const std::string& name_or_file, const ImportRules& rules) {
     Scene scene;
     scene.name = file.stem().string();
     scene.origin = file.string();
-    scene.kinds[0] = kindWith(kPaperLeaf);
-    importFile(scene.kinds[0], file, rules);
+    importScene(scene, file, rules);
     return scene;
   }
   if (std::optional<Scene> scene = builtin(name_or_file)) return *scene;
-  throw InvalidInput(fmt::format("scene \"{}\": must be a .toml, .obj, .ply, .gltf or .glb file or one of: {}",
-                                 name_or_file, fmt::join(builtinScenes(), ", ")));
+  throw InvalidInput(
+      fmt::format("scene \"{}\": must be a .toml, .obj, .ply, .gltf, .glb, .txt or .leaves file or one of: {}",
+                  name_or_file, fmt::join(builtinScenes(), ", ")));
 }
 
 std::string sceneFileHelp() {
@@ -346,12 +372,17 @@ name = "file name"            # what reports call it
 [tree]                        # the prototype: grown, or read from a file
 species = "cherry"            # see: sunfleck plant --list; or a parameter file (.toml) beside the scene file
 seed = 1
-# file = "tree.obj"           # .obj, .ply, .gltf or .glb beside the scene file, instead of species
+# file = "tree.obj"           # .obj, .ply, .gltf, .glb, or leaves in lines radius x y z nx ny nz (.txt, .leaves), beside
+                              # the scene file, instead of species
 # leaf = "leaf*"              # materials or groups of the file that are leaves, or a list of such ...
-# wood = "bark*"              # ... and those that are wood; told by their names if not given
-                              # A material's map_d (an image of its opacity) cuts the leaves out, for trace alone
-# scale = 1.0                 # metres per unit of the file, above 0
-# up = "z"                    # the file's upward axis: "z" or "y"; if not given that of its format, y of glTF alone
+# wood = "bark*"              # ... and those that are wood; told by their names if not given. A material's name comes
+                              # before those of groups (glTF: the mesh), these before the object's (the node)
+# cards = "cut"               # what an image's opacity cuts out of leaves' faces: "cut" to triangles, as a "mask" that
+                              # trace alone takes, or "whole" faces
+# scale = 1.0                 # metres per unit of the file, above 0; or instead
+# unit = "m"                  # the file's unit: "m", "dm", "cm", "mm", "km", "in" or "ft"
+# up = "z"                    # the file's upward axis: "x", "y" or "z"; if not given that of its format, y of glTF alone
+# mesh = "oak"                # of a glTF file of instances: the kind of tree to take; if not given all of it as one
 # name = "cherry"             # what positions call it; the species' or the file's name if not given
 # leaf_reflectance = 0.475    # its own optics, if not those of [leaf] and [wood]
 # leaf_transmittance = 0.475

@@ -1,5 +1,7 @@
 #include "render/detail/scene_leaf_file.hpp"
 
+#include <algorithm>
+
 #include "leaves/measured_leaves.hpp"
 #include "leaves/prospect.hpp"
 #include "leaves/slab_leaf.hpp"
@@ -7,11 +9,17 @@
 namespace sunfleck::detail {
 namespace {
 
+// Ways in which a table may tell its leaves.
+const std::vector<std::vector<std::string>>& ways() {
+  static const std::vector<std::vector<std::string>> kWays{
+      {"species", "prospect"}, {"slab"}, {"reflectance", "transmittance"}};
+  return kWays;
+}
+
 // Throws where the table tells its leaves in more than one way.
 void requireOneWay(const SceneTable& table, const std::string& prefix) {
-  const std::vector<std::vector<std::string>> ways{{"species", "prospect"}, {"slab"}, {"reflectance", "transmittance"}};
   std::string first;
-  for (const std::vector<std::string>& way : ways) {
+  for (const std::vector<std::string>& way : ways()) {
     std::string found;
     for (const std::string& key : way)
       if (found.empty() && table.has(prefix + key)) found = prefix + key;
@@ -71,6 +79,12 @@ LightBands readLightBands(SceneTable& leaf) {
   std::array<WavelengthBand, kBands> bands;
   for (std::size_t band = 0; band < kBands; ++band) bands[band] = {read[band].first, read[band].second};
   return bands;
+}
+
+bool tellsLeafShares(const SceneTable& table, const std::string& prefix) {
+  return std::ranges::any_of(ways(), [&](const auto& way) {
+    return std::ranges::any_of(way, [&](const std::string& key) { return table.has(prefix + key); });
+  });
 }
 
 void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, BandOptics& optics) {

@@ -154,8 +154,9 @@ class Writer {
       if (!recipe.rules.leaf.empty()) key("leaf", texts(recipe.rules.leaf));
       if (!recipe.rules.wood.empty()) key("wood", texts(recipe.rules.wood));
       key("scale", number(recipe.rules.scale));
-      if (recipe.rules.up != ImportRules::Up::of_format)
-        key("up", recipe.rules.up == ImportRules::Up::y ? "\"y\"" : "\"z\"");
+      if (recipe.rules.up != ImportRules::Up::of_format) key("up", quoted(nameOf(recipe.rules.up)));
+      if (recipe.rules.cards != ImportRules::Cards::cut) key("cards", quoted(nameOf(recipe.rules.cards)));
+      if (!recipe.rules.mesh.empty()) key("mesh", quoted(recipe.rules.mesh));
     } else {
       refuse(fmt::format("its trees \"{}\" came from no species and no file", kind.name));
     }

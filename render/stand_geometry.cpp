@@ -109,7 +109,7 @@ void requireWholeLeaves(const Scene& scene, const std::string& what) {
   for (const TreeKind& kind : scene.kinds)
     if (!kind.mesh->leaf_cuts.empty())
       throw InvalidInput(beginning(scene) + "\"" + kind.name +
-                         "\" has leaves that masks cut out (map_d): must be whole for " + what +
+                         "\" has leaves that masks cut out (cards = \"mask\"): must be cut to triangles for " + what +
                          " (trace alone takes masks)");
 }
 

@@ -103,6 +103,19 @@ does "absorbed by leaves" trace stand.toml --paths 1000
 does "2 trees" plant --stand positions.csv -o stand.glb
 does "wrote e.vdb: 9.4" plant turbid_ellipsoid --density 1.5 -o e.vdb
 does "90 (180 triangles)" plant random_crown --leaves 90 -o crown.ply
+printf '0.1 0 0 1 0 0 1\n0.1 1 1 2 0 1 1\n' >leaves.txt
+does "2 (20 triangles)" plant leaves.txt
+does "wrote leaves.vdb" voxelize leaves.txt -o leaves.vdb
+does "wrote forest.toml" plant stand.glb -o forest.toml
+does "absorbed by leaves" trace forest.toml --paths 1000
+does '"trees": 2' plant stand.glb --json
+refuses 'leaf "palm": must match a material, group or object' plant leaf.obj --leaf palm
+refuses '--unit = "furlong": must be one of m, dm' plant leaf.obj --unit furlong
+refuses '--up = "w": must be one of x, y, z' plant leaf.obj --up w
+refuses "must be of a glTF file" plant leaf.obj --mesh oak
+refuses "is a stand of instances" plant stand.glb --stand regular -o other.toml
+refuses "--cards" plant --cards cut
+refuses "gallery.jpg" plant --gallery gallery.jpg
 sed 's/^scale = .*/scale = -1.0/' my.toml >bad.toml
 refuses "bad.toml:13: tree.scale = -1: must be a number in" plant bad.toml -o bad.obj
 [ -e bad.obj ] && fail "plant: wrote a tree of wrong parameters"

@@ -155,3 +155,21 @@ TEST(SceneGeometry, CameraShowsTheWholeStand) {
 }
 
 }  // namespace
+
+// Check that the bytes of a PNG are read as the file of them is, and that what they are not is refused.
+TEST(ImageFile, OpacityIsReadFromBytes) {
+  const Folder folder;
+  const fs::path file = folder.path / "leaf.png";
+  writePng(file, 2, 1, std::vector<std::uint8_t>{255, 0, 0, 0, 255, 51});
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const Image of_file = readOpacity(file, {}), of_bytes = readOpacity("other.png", bytes);
+  EXPECT_EQ(of_bytes.channels, of_file.channels);
+  EXPECT_EQ(of_bytes.values, of_file.values);
+  ASSERT_EQ(of_bytes.values.size(), 6u);
+  EXPECT_EQ(of_bytes.values[4], 1.f);
+  EXPECT_NEAR(of_bytes.values[5], 51.f / 255.f, 1e-6f);  // rounding of the division
+  EXPECT_THROW(readOpacity("other.png", std::string_view(bytes).substr(0, bytes.size() / 2)), InvalidInput);
+  EXPECT_THROW(readOpacity("other.jpg", bytes), InvalidInput);
+  EXPECT_THROW(readOpacity("other", bytes), InvalidInput);
+}

@@ -53,6 +53,13 @@ class Import : public testing::Test {
   fs::path folder_;
 };
 
+ImportRules rulesOf(const std::vector<std::string>& leaf, const std::vector<std::string>& wood) {
+  ImportRules rules;
+  rules.leaf = leaf;
+  rules.wood = wood;
+  return rules;
+}
+
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 }  // namespace
@@ -94,7 +101,8 @@ TEST_F(Import, PolygonsKeepTheirArea) {
     EXPECT_EQ(one.leaf_triangles.size(), 4u);
     EXPECT_EQ(one.leaf_count, 1u);
     EXPECT_NEAR(leafArea(one), 3., 3e-6) << order;
-    EXPECT_NEAR(leafArea(importTree(path, {.leaf = {}, .wood = {}, .scale = 1e-3f}).mesh), 3e-6, 3e-9) << order;
+    EXPECT_NEAR(leafArea(importTree(path, {.leaf = {}, .wood = {}, .scale = 1e-3f, .mesh = {}}).mesh), 3e-6, 3e-9)
+        << order;
   }
   const std::string small = "v 0 0 0\nv .0002 0 0\nv .0002 .0001 0\nv .0001 .0001 0\nv .0001 .0002 0\nv 0 .0002 0\n";
   EXPECT_NEAR(leafArea(importTree(file("s.obj", small + "g leaf\nf 1 2 3 4 5 6\n")).mesh), 3e-8, 3e-14);
@@ -103,12 +111,13 @@ TEST_F(Import, PolygonsKeepTheirArea) {
 // Check scale and the upward axis: y up, z towards the viewer becomes z up with handedness kept.
 TEST_F(Import, ScaleAndUpwardAxis) {
   const fs::path path = file("t.obj", "v 0 0 0\nv 1 2 3\nv 1 0 0\ng leaf\nf 1 2 3\n");
-  const TreeMesh mesh = importTree(path, {.leaf = {}, .wood = {}, .scale = 2.f, .up = ImportRules::Up::y}).mesh;
+  const TreeMesh mesh =
+      importTree(path, {.leaf = {}, .wood = {}, .scale = 2.f, .up = ImportRules::Up::y, .mesh = {}}).mesh;
   EXPECT_EQ(mesh.vertices[1], glm::vec3(2.f, -6.f, 4.f));
   for (const float bad : {0.f, -1.f, std::nanf(""), std::numeric_limits<float>::infinity()})
-    EXPECT_NE(refusal(path, {.leaf = {}, .wood = {}, .scale = bad}).find("scale = "), std::string::npos);
+    EXPECT_NE(refusal(path, {.leaf = {}, .wood = {}, .scale = bad, .mesh = {}}).find("scale = "), std::string::npos);
   // Finite in the file, beyond 1e6 m after scaling.
-  EXPECT_NE(refusal(path, {.leaf = {}, .wood = {}, .scale = 1e7f}).find("vertex 2 x"), std::string::npos);
+  EXPECT_NE(refusal(path, {.leaf = {}, .wood = {}, .scale = 1e7f, .mesh = {}}).find("vertex 2 x"), std::string::npos);
 }
 
 // Check who is leaf: by material first, then by group, then by object; whole words before parts of words.
@@ -157,7 +166,7 @@ TEST_F(Import, BrownIsWoodWhenNamesAreSilent) {
 TEST_F(Import, RulesDecide) {
   const fs::path path = file("t.obj", kSquare + "usemtl Green\nf 1 2 3\nusemtl bark\nf 1 3 4\ng x\nf 2 3 4\n");
   const auto counts = [&](const std::vector<std::string>& leaf, const std::vector<std::string>& wood) {
-    const TreeMesh mesh = importTree(path, {.leaf = leaf, .wood = wood}).mesh;
+    const TreeMesh mesh = importTree(path, rulesOf(leaf, wood)).mesh;
     return std::pair(mesh.leaf_triangles.size(), mesh.wood_triangles.size());
   };
   using Counts = std::pair<std::size_t, std::size_t>;
@@ -168,14 +177,22 @@ TEST_F(Import, RulesDecide) {
   EXPECT_EQ(counts({"green"}, {"*"}), Counts(1, 2));
   EXPECT_EQ(counts({}, {"x"}), Counts(2, 1));
   EXPECT_EQ(counts({"bark"}, {"green"}), Counts(2, 1));
-  EXPECT_NE(refusal(path, {.leaf = {"palm"}, .wood = {}}).find("no name matches"), std::string::npos);
-  EXPECT_NE(refusal(path, {.leaf = {"x", "green"}, .wood = {"bark"}}).find("as both"), std::string::npos);
-  EXPECT_NE(refusal(path, {.leaf = {"x"}, .wood = {"green"}}).find("leave open"), std::string::npos);
-  EXPECT_NE(refusal(path, {.leaf = {"*"}, .wood = {"*"}}).find("both"), std::string::npos);
-  EXPECT_NE(refusal(path, {.leaf = {""}, .wood = {}}).find("leaf or wood name"), std::string::npos);
+  EXPECT_EQ(
+      refusal(path, rulesOf({"palm"}, {})),
+      "t.obj: leaf \"palm\": must match a material, group or object; it has material \"Green\"; material \"bark\"; "
+      "material \"bark\", group \"x\"");
+  EXPECT_NE(refusal(path, rulesOf({"green", "palm"}, {"bark"})).find("leaf \"palm\""), std::string::npos);
+  EXPECT_NE(refusal(path, rulesOf({"green"}, {"oak"})).find("wood \"oak\""), std::string::npos);
+  // The material of the third face comes before its group, and the whole name before a part of it.
+  EXPECT_EQ(counts({"x", "green"}, {"bark"}), Counts(1, 2));
+  EXPECT_EQ(counts({"a", "green"}, {"bark"}), Counts(1, 2));
+  EXPECT_NE(refusal(path, rulesOf({"gre*", "bark"}, {"*een"})).find("as both"), std::string::npos);
+  EXPECT_NE(refusal(path, rulesOf({"x"}, {"green"})).find("leave open"), std::string::npos);
+  EXPECT_NE(refusal(path, rulesOf({"*"}, {"*"})).find("both"), std::string::npos);
+  EXPECT_NE(refusal(path, rulesOf({""}, {})).find("leaf or wood name"), std::string::npos);
   const fs::path nameless = file("n.obj", kSquare + "f 1 2 3 4\n");
   EXPECT_NE(refusal(nameless).find("no name"), std::string::npos);
-  EXPECT_EQ(importTree(nameless, {.leaf = {"*"}, .wood = {}}).mesh.leaf_triangles.size(), 2u);
+  EXPECT_EQ(importTree(nameless, rulesOf({"*"}, {})).mesh.leaf_triangles.size(), 2u);
 }
 
 // Check that each broken OBJ is refused in one line that names the file and, where there is one, the line.
@@ -211,7 +228,7 @@ TEST_F(Import, BrokenObjIsRefused) {
   EXPECT_NE(refusal(file("t.obj", "\x7f\x45\x4c\x46\x02\x01\xff\xfe garbage")).find("has no faces"), std::string::npos);
   EXPECT_EQ(refusal(folder_ / "none.obj"), "none.obj: cannot be read: there is no such file");
   EXPECT_NE(refusal(folder_).find("it is a folder"), std::string::npos);
-  EXPECT_NE(refusal(file("t.xyz", "v")).find("an .obj, .ply, .gltf or .glb file"), std::string::npos);
+  EXPECT_NE(refusal(file("t.xyz", "v")).find("an .obj, .ply, .gltf, .glb, .txt or .leaves file"), std::string::npos);
   EXPECT_NE(refusal(file("w.obj", kSquare + "g bark\nf 1 2 3 4\n")).find("has only wood and no leaf (group \"bark\")"),
             std::string::npos);
 }
@@ -275,14 +292,14 @@ std::string plyWith(const std::string& vertices, const std::string& faces, const
 TEST_F(Import, PlyOfEveryFormat) {
   for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     const std::string ply = squarePly(format);
-    const ImportedTree tree = importTree(file("t.ply", ply), {.leaf = {"*"}, .wood = {}});
+    const ImportedTree tree = importTree(file("t.ply", ply), rulesOf({"*"}, {}));
     EXPECT_EQ(tree.mesh.leaf_count, 1u) << format;
     EXPECT_EQ(tree.mesh.vertices[2], glm::vec3(1.f, 1.f, 0.f)) << format;
     EXPECT_DOUBLE_EQ(leafArea(tree.mesh), 1.) << format;
     for (std::size_t length = 0; length < ply.size(); length += 3)
       EXPECT_NE(refusal(file("t.ply", ply.substr(0, length))), "") << format << " " << length;
   }
-  EXPECT_NE(refusal(folder_ / "t.ply", {.leaf = {"green"}, .wood = {}}).find("no names"), std::string::npos);
+  EXPECT_NE(refusal(folder_ / "t.ply", rulesOf({"green"}, {})).find("no names"), std::string::npos);
 }
 
 // Check broken PLY files, among them counts that would fill the memory.
@@ -312,31 +329,4 @@ TEST_F(Import, BrokenPlyIsRefused) {
       {plyWith("3", "1", "0 0 0\n1 0 0\n0 1 0\n3 0 1"), "t.ply line 13: face 1: the file ends before it is complete"},
   };
   for (const auto& [content, expected] : cases) EXPECT_EQ(refusal(file("t.ply", content)), expected);
-}
-
-// Check trees of other programs, where they lie beside the repository: leaves, leaf triangles and wood triangles as
-// their makers made them. Without them, a tree of ours stands in.
-TEST_F(Import, TreesOfOtherPrograms) {
-  writeObj(folder_ / "own.obj", grow(species("maple"), 1));
-  EXPECT_GT(importTree(folder_ / "own.obj").mesh.leaf_count, 10'000u);
-
-  const fs::path trees = fs::path(SUNFLECK_SOURCE_DIR) / ".." / "shared" / "trees";
-  struct Known {
-    std::string name;
-    std::uint32_t leaves;
-    std::size_t leaf_triangles, wood_triangles;  // in the file, those of no area among them
-  };
-  // A mask that cuts nothing away.
-  const auto whole = [](const fs::path&) { return Image{.width = 1, .height = 1, .channels = {"Y"}, .values = {1.f}}; };
-  for (const Known& known :
-       {Known{"AlmondWP.obj", 24'150, 48'300, 116'936}, Known{"treegen_acer_s2.obj", 2'429, 21'861, 54'012},
-        Known{"treegen_quaking_aspen_s1.obj", 15'364, 138'276, 57'980},
-        Known{"eztree_oak_medium.obj", 5'320, 10'640, 3'166}, Known{"leafcube_lai2_spherical.obj", 22'418, 41'335, 0},
-        Known{"ellipsoid18k.ply", 9'000, 18'000, 0}}) {
-    if (!fs::exists(trees / known.name)) continue;
-    const ImportedTree tree = importTree(trees / known.name, {}, whole);
-    EXPECT_EQ(tree.mesh.leaf_count, known.leaves) << known.name;
-    EXPECT_EQ(tree.mesh.leaf_triangles.size() + tree.dropped.leaf_triangles, known.leaf_triangles) << known.name;
-    EXPECT_EQ(tree.mesh.wood_triangles.size() + tree.dropped.wood_triangles, known.wood_triangles) << known.name;
-  }
 }

@@ -82,6 +82,8 @@ class MaskedObj : public testing::Test {
 
 const std::string kFace = "usemtl leaf\nf 1/1 2/2 3/3 4/4\n";
 
+const ImportRules kMasked{.leaf = {}, .wood = {}, .cards = ImportRules::Cards::mask, .mesh = {}};
+
 // The upper left and lower right quarters again, grey under an alpha that says otherwise or is 1 all over.
 Image grey(float alpha) {
   return {.width = 2, .height = 2, .channels = {"Y", "A"}, .values = {.9f, alpha, .1f, 1.f, .2f, 1.f, .8f, 1.f}};
@@ -205,12 +207,12 @@ TEST_F(MaskedObj, ReadsTheMask) {
   const fs::path path = write(kFace, "newmtl leaf\nmap_d mask.png\n");
   fs::path asked;
   const auto reader = [&](float alpha) {
-    return [&asked, alpha](const fs::path& image) {
+    return [&asked, alpha](const fs::path& image, std::string_view) {
       asked = image;
       return grey(alpha);
     };
   };
-  const ImportedTree tree = importTree(path, {}, reader(1.f));
+  const ImportedTree tree = importTree(path, kMasked, reader(1.f));
   EXPECT_EQ(asked, folder_ / "mask.png");
   ASSERT_EQ(tree.mesh.masks.size(), 1u);
   EXPECT_EQ(tree.mesh.masks[0]->opaque, kQuarters.opaque);
@@ -221,25 +223,25 @@ TEST_F(MaskedObj, ReadsTheMask) {
     for (std::size_t corner = 0; corner < 3; ++corner)
       EXPECT_EQ(tree.mesh.leaf_cuts[i].corners[corner],
                 glm::vec2(tree.mesh.vertices[tree.mesh.leaf_triangles[i][static_cast<int>(corner)]]));
-  EXPECT_NEAR(leafArea(importTree(path, {}, reader(0.f)).mesh), 0.75, 1e-12);
+  EXPECT_NEAR(leafArea(importTree(path, kMasked, reader(0.f)).mesh), 0.75, 1e-12);
 
   write(kFace, "newmtl leaf\nd 0.6\nmap_d mask.png\n");  // .6 of .8 is not half
-  EXPECT_NEAR(leafArea(importTree(path, {}, reader(1.f)).mesh), 0.25, 1e-12);
+  EXPECT_NEAR(leafArea(importTree(path, kMasked, reader(1.f)).mesh), 0.25, 1e-12);
 }
 
 // Check what is refused, each in one line: masks where nobody reads them, images moved by options, faces without
 // texture coordinates, a mask that leaves nothing; and that faces of transparent materials are left out and told.
 TEST_F(MaskedObj, RefusesWhatItCannotCut) {
-  const ImageReader reader = [](const fs::path&) { return grey(1.f); };
+  const ImageReader reader = [](const fs::path&, std::string_view) { return grey(1.f); };
   const std::string masked = "newmtl leaf\nmap_d mask.png\n";
-  EXPECT_NE(refusal(write(kFace, masked)).find("trace alone"), std::string::npos);
+  EXPECT_NE(refusal(write(kFace, masked)).find("no images are read here"), std::string::npos);
   EXPECT_NE(refusal(write(kFace, "newmtl leaf\nmap_d -o 0.5 0 0 mask.png\n"), reader).find("must be without -s and -o"),
             std::string::npos);
   const std::string bare = refusal(write("usemtl leaf\nf 1 2 3 4\n", masked), reader);
   EXPECT_NE(bare.find("texture coordinate"), std::string::npos) << bare;
   EXPECT_NE(refusal(write("usemtl leaf\nf 1/9 2/2 3/3 4/4\n", masked), reader).find("texture coordinate"),
             std::string::npos);
-  EXPECT_NE(refusal(write(kFace, "newmtl leaf\nd 0.1\nmap_d mask.png\n"), reader).find("has no leaves"),
+  EXPECT_NE(refusal(write(kFace, "newmtl leaf\nd 0.1\nmap_d mask.png\n"), reader).find("must have leaf somewhere"),
             std::string::npos);
 
   const fs::path two = write(kFace + "usemtl leaf_ghost\nf 1 2 3\n", "newmtl leaf\nnewmtl leaf_ghost\nd 0.2\n");

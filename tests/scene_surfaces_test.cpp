@@ -107,14 +107,34 @@ TEST_F(SceneSurfaces, BringsATexture) {
             std::string::npos);
 }
 
+// Check how a scene's file is read: its unit, its upward axis, and what is no name of either.
+TEST_F(SceneSurfaces, ReadsUnitsAndAxes) {
+  fs::remove(folder_ / "tree.mtl");
+  const auto corner = [&](const std::string& keys) { return read(keys).kinds[0].mesh->vertices[2]; };
+  EXPECT_EQ(corner(""), glm::vec3(2.f, 1.f, 1.f));
+  EXPECT_EQ(corner("unit = \"ft\"\n"), 0.3048f * glm::vec3(2.f, 1.f, 1.f));
+  EXPECT_EQ(corner("up = \"y\"\n"), glm::vec3(2.f, -1.f, 1.f));
+  EXPECT_EQ(corner("up = \"x\"\nscale = 2.0\n"), glm::vec3(2.f, 2.f, 4.f));
+  EXPECT_EQ(refusal("unit = \"furlong\"\n"),
+            "s.toml: tree.unit = \"furlong\": must be one of m, dm, cm, mm, km, in, ft");
+  EXPECT_EQ(refusal("up = \"w\"\n"), "s.toml: tree.up = \"w\": must be one of x, y, z");
+  EXPECT_EQ(refusal("cards = \"trumps\"\n"), "s.toml: tree.cards = \"trumps\": must be one of cut, mask, whole");
+  EXPECT_EQ(refusal("unit = \"cm\"\nscale = 2.0\n"), "s.toml: [tree] has both scale and unit: must be one of them");
+  EXPECT_EQ(refusal("mesh = \"oak\"\n"), "s.toml: tree.obj: mesh \"oak\": must be of a glTF file");
+}
+
 // Check a mask from a PNG whose left half is leaf, where the code value is at least half of the largest whatever light
 // that stands for.
 TEST_F(SceneSurfaces, CutsLeavesByAMask) {
   write("tree.mtl", "newmtl leaf\nmap_d mask.png\n");
   EXPECT_NE(refusal("").find("mask.png: cannot be read"), std::string::npos);
   writeImage(folder_ / "mask.png", {.width = 2, .height = 1, .channels = {"Y"}, .values = {0.3f, 0.1f}}, 1.f);
-  EXPECT_NEAR(leafArea(*read("").kinds[0].mesh), 1., 1e-12);
-  const std::string refused = refusal("");
-  EXPECT_NE(refused.find("has leaves that masks cut out (map_d): must be whole for the models"), std::string::npos)
+  EXPECT_NEAR(leafArea(*read("").kinds[0].mesh), 1., 1e-6);
+  EXPECT_EQ(refusal(""), "accepted");
+  EXPECT_NEAR(leafArea(*read("cards = \"whole\"\n").kinds[0].mesh), 2., 1e-12);
+  EXPECT_NEAR(leafArea(*read("cards = \"mask\"\n").kinds[0].mesh), 1., 1e-12);
+  const std::string refused = refusal("cards = \"mask\"\n");
+  EXPECT_NE(refused.find("has leaves that masks cut out (cards = \"mask\"): must be cut to triangles for the models"),
+            std::string::npos)
       << refused;
 }

@@ -62,6 +62,7 @@ void expectSame(const Scene& a, const Scene& b) {
     EXPECT_EQ(x.recipe.rules.wood, y.recipe.rules.wood);
     EXPECT_EQ(x.recipe.rules.scale, y.recipe.rules.scale);
     EXPECT_EQ(x.recipe.rules.up, y.recipe.rules.up);
+    EXPECT_EQ(x.recipe.rules.cards, y.recipe.rules.cards);
     EXPECT_EQ(x.recipe.file.empty(), y.recipe.file.empty());
     if (!x.recipe.file.empty()) {
       EXPECT_TRUE(fs::equivalent(x.recipe.file, y.recipe.file));
@@ -137,10 +138,11 @@ Scene drawnScene(std::uint64_t seed, const fs::path& folder) {
   for (std::size_t i = 0; i < scene.kinds.size(); ++i) {
     TreeKind& kind = scene.kinds[i];
     ImportRules rules;
-    if (random.uniform() < 0.5f) rules.leaf = {"leaf", "foliage*"};
+    if (random.uniform() < 0.5f) rules.leaf = {"leaf", "lea*"};
     if (random.uniform() < 0.5f) rules.wood = {"bark"};
     rules.scale = drawn(random, 1e-3f, 100.f);
-    rules.up = random.uniform() < 0.5f ? ImportRules::Up::y : ImportRules::Up::z;
+    rules.up = random.uniform() < 0.5f ? ImportRules::Up::y : ImportRules::Up::x;
+    if (random.uniform() < 0.3f) rules.cards = ImportRules::Cards::mask;
     const Scene one = readScene((folder / "square.obj").string(), rules);
     kind.mesh = one.kinds[0].mesh;
     kind.recipe = one.kinds[0].recipe;

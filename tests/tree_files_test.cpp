@@ -151,8 +151,9 @@ TEST_F(TreeFiles, GltfNodesPlaceTheirMeshes) {
   };
   EXPECT_EQ(corner(R"([{"mesh":0}])"), glm::vec3(1.f, 0.f, 0.f));
   EXPECT_EQ(corner(R"([{"mesh":0,"translation":[1,2,3]}])"), glm::vec3(2.f, -3.f, 2.f));
-  EXPECT_EQ(corner(R"([{"mesh":0,"translation":[1,2,3]}])", {.leaf = {}, .wood = {}, .up = ImportRules::Up::z}),
-            glm::vec3(2.f, 2.f, 3.f));
+  EXPECT_EQ(
+      corner(R"([{"mesh":0,"translation":[1,2,3]}])", {.leaf = {}, .wood = {}, .up = ImportRules::Up::z, .mesh = {}}),
+      glm::vec3(2.f, 2.f, 3.f));
   EXPECT_EQ(corner(R"([{"scale":[2,2,2],"children":[1]},{"mesh":0,"translation":[1,0,0]}])"), glm::vec3(4.f, 0.f, 0.f));
   EXPECT_EQ(corner(R"([{"mesh":0,"matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,5,0,0,1]}])"), glm::vec3(5.f, 0.f, 1.f));
 }

@@ -7,9 +7,12 @@
 
 namespace sunfleck::detail {
 
-// Reads a .gltf or .glb file's triangles through all nodes of its scene and their instances (EXT_mesh_gpu_instancing),
-// in metres with y up. The mesh is not finished. Buffers beside the file are read, images are not. Throws
-// InvalidInput("<source>: ...").
-ImportedTree readGltf(const std::filesystem::path& path, const std::string& bytes, const ImportRules& rules);
+// Reads a glTF as one tree, finished, in metres with z up: all of it, or the kind `rules.mesh`.
+ImportedTree readGltf(const std::filesystem::path& path, const std::string& bytes, const ImportRules& rules,
+                      const ImageReader& read_image);
+
+// The same as a stand, as importStand() tells.
+ImportedStand readGltfStand(const std::filesystem::path& path, const std::string& bytes, const ImportRules& rules,
+                            const ImageReader& read_image);
 
 }  // namespace sunfleck::detail

@@ -3,20 +3,25 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plants/import.hpp"
 
 namespace sunfleck::detail {
 
-// Faces of a file that bear the same names.
+struct Opacity;
+
+// Faces of a file that bear the same names, which lie in what was read of the file.
 struct Part {
-  std::string material, object;
-  std::vector<std::string> groups;
-  std::optional<glm::vec3> colour;  // diffuse colour of the material [1], when the file's materials are known
+  std::string_view material, object;
+  std::string_view groups;           // names of groups apart by blanks, or one name
+  bool one_group = false;            // whether `groups` is one name, blanks and all
+  std::optional<glm::vec3> colour;   // diffuse colour of the material [1], when the file's materials are known
+  const Opacity* opacity = nullptr;  // of the material; null: all of it is there
 };
 
-enum class Kind { leaf, wood };
+enum class Kind : unsigned char { leaf, wood };
 
 struct Verdict {
   std::vector<Kind> kinds;  // of each part

@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image.hpp"
@@ -26,8 +27,10 @@ class ImageCodec {
   virtual ~ImageCodec() = default;
 
   // The first subimage, rows from the top, colours not multiplied by alpha; its channels as the file calls them.
+  //   bytes  of the image, where they are not those of the file, which then tells its format alone: PNG or JPEG
   //   check  may throw before any pixel is read
-  virtual Image read(const std::filesystem::path& file, const std::function<void(const StoredImage&)>& check) const = 0;
+  virtual Image read(const std::filesystem::path& file, std::string_view bytes,
+                     const std::function<void(const StoredImage&)>& check) const = 0;
   virtual void writeExr(const std::filesystem::path& file, const Image& image) const = 0;
   // A PNG of 8-bit sRGB codes, row after row.
   virtual std::string png(int width, int height, int channels, std::span<const std::uint8_t> codes) const = 0;

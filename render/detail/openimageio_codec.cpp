@@ -16,11 +16,17 @@ namespace {
 
 class OpenImageIoCodec final : public ImageCodec {
  public:
-  Image read(const std::filesystem::path& file, const std::function<void(const StoredImage&)>& check) const override {
+  Image read(const std::filesystem::path& file, std::string_view bytes,
+             const std::function<void(const StoredImage&)>& check) const override {
     OIIO::ImageSpec as_stored;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);  // else colours would come multiplied by alpha
-    const auto in = OIIO::ImageInput::open(file.string(), &as_stored);
+    OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
+    const auto in = bytes.empty() ? OIIO::ImageInput::open(file.string(), &as_stored)
+                                  : OIIO::ImageInput::create(file.extension().string().substr(1));
     if (!in) fail(OIIO::geterror());
+    if (OIIO::ImageSpec of_memory;
+        !bytes.empty() && (!in->set_ioproxy(&memory) || !in->open(file.string(), of_memory, as_stored)))
+      fail(in->geterror());
     const OIIO::ImageSpec& spec = in->spec();
     check({.width = spec.width,
            .height = spec.height,

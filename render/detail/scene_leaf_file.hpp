@@ -9,6 +9,9 @@ namespace sunfleck::detail {
 // What the bands of leaves that are told by species or contents are, by bands_nm of [leaf].
 LightBands readLightBands(SceneTable& leaf);
 
+// Whether the table tells reflectance or transmittance of leaves, in any way.
+bool tellsLeafShares(const SceneTable& table, const std::string& prefix);
+
 // Reflectance and transmittance of leaves: those of the table, as numbers, by species and contents, or as a slab of
 // tissue, under keys with `prefix` before them, or else those that `optics` has already. Throws InvalidInput as
 // readScene() does, and on a table that tells them in two ways.
