@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "core/bounds.hpp"
@@ -42,10 +43,15 @@ class Treatments {
   Treatment decide(const Opacity& opacity) {
     if (opacity.image.empty()) return {.left_out = opacity.factor < opacity.least};
     if (rules_.cards == ImportRules::Cards::whole) return {};
+    const auto [known, is_new] = masks_.try_emplace(
+        {opacity.image.string(), opacity.bytes.data(), opacity.factor, opacity.least, opacity.by_alpha, opacity.moved},
+        LeafCut::kWhole);
+    if (!is_new) return {.mask = known->second};
     const std::shared_ptr<const LeafMask> mask = maskOf(opacity, read_image_, source_);
     if (!mask) return {};
+    known->second = static_cast<std::uint32_t>(mesh_.masks.size());
     mesh_.masks.push_back(mask);
-    return {.mask = static_cast<std::uint32_t>(mesh_.masks.size() - 1)};
+    return {.mask = known->second};
   }
 
   const ImportRules& rules_;
@@ -53,6 +59,8 @@ class Treatments {
   const std::string& source_;
   TreeMesh& mesh_;
   std::map<const Opacity*, Treatment> known_;
+  // Of images, which several materials may share.
+  std::map<std::tuple<std::string, const char*, float, float, bool, bool>, std::uint32_t> masks_;
 };
 
 MaskCorners cornersOf(const NamedTriangles& faces, std::size_t triangle) {

@@ -104,6 +104,9 @@ Collapse collapseOf(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& 
     if (of_c == 0.) return collapse;
     collapse.corner = d + of_e / of_c * (c - d);
   }
+  // Of lines nearly along AD the new corner may lie anywhere.
+  const double length = glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, d);
+  if (!(glm::distance(collapse.corner, b) <= length)) return collapse;
   collapse.moved = std::abs(cross(c - b, collapse.corner - b));
   return collapse;
 }

@@ -12,8 +12,9 @@
 namespace sunfleck::detail {
 namespace {
 
-constexpr std::size_t kMostCorners = 3000;  // of a mask; cutting ears takes the square of it
-constexpr double kMostDropped = 0.009;      // area of specks less that of holes, over that of leaf
+constexpr std::size_t kMostCorners = 3000;          // of a mask; cutting ears takes the square of it
+constexpr std::size_t kMostPixelCorners = 500'000;  // of its outlines before they are simplified: a second's work
+constexpr double kMostDropped = 0.009;              // area of specks less that of holes, over that of leaf
 
 double turnOf(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -195,9 +196,12 @@ MaskTriangles trianglesOf(const LeafMask& mask, const std::string& source) {
   if (outlines.empty())
     throw InvalidInput(source + ": mask of " + std::to_string(mask.width) + " x " + std::to_string(mask.height) +
                        " pixels: must have leaf somewhere");
+  std::size_t corners = 0;
+  for (const Outline& outline : outlines) corners += outline.size();
   // 7 x 7 pixels of an image of 512 x 512: leaves keep their lobes.
   const double usual = std::max(0.5, 2e-4 * mask.width * mask.height);
   for (const double share : {1., 0.25, 2., 4., 8., 16.}) {
+    if (corners > kMostPixelCorners) break;
     std::optional<MaskTriangles> cut = triangulated(outlines, usual * share);
     if (!cut) continue;
     for (glm::dvec2& corner : cut->corners) corner = {corner.x / mask.width, 1. - corner.y / mask.height};
