@@ -58,7 +58,7 @@ class EdgeFollower {
     Outline outline;
     const std::size_t start = at(x, y);
     int first = 0;
-    while (((left_[start] >> first) & 1u) == 0u) ++first;
+    while (((std::uint32_t{left_[start]} >> first) & 1u) == 0u) ++first;
     for (int direction = first;;) {
       outline.emplace_back(x, y);
       do {
@@ -70,7 +70,7 @@ class EdgeFollower {
       for (const int turn : {1, 0, 3}) {
         const int next = (direction + turn) & 3;
         if (at(x, y) == start && next == first) return outline;
-        if (((left_[at(x, y)] >> next) & 1u) == 0u) continue;
+        if (((std::uint32_t{left_[at(x, y)]} >> next) & 1u) == 0u) continue;
         direction = next;
         break;
       }
