@@ -24,8 +24,10 @@ template <typename Same>
 std::string shortest(double value, const Same& same) {
   constexpr int kAllDigits = 17;
   for (int digits = 1; digits <= kAllDigits; ++digits)
-    if (std::string text = fmt::format("{:.{}g}", value, digits); same(std::strtod(text.c_str(), nullptr)))
+    if (const double read = std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); same(read)) {
+      const std::string text = fmt::format("{}", read);
       return text == "-0" ? "-0.0" : text;  // TOML's whole numbers have no -0
+    }
   throw InvalidInput(fmt::format("number in a scene = {}: must be finite", value));
 }
 
