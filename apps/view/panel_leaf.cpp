@@ -12,7 +12,7 @@
 namespace sunfleck::view {
 namespace {
 
-constexpr std::array kWays{"numbers", "measured species", "contents (PROSPECT)", "slab of tissue"};
+constexpr std::array kWays{"numbers", "measured species", "contents", "slab of tissue"};
 
 std::size_t wayOf(const LeafDescription& leaf) {
   if (const auto* contents = std::get_if<LeafByContents>(&leaf)) return contents->species.empty() ? 2 : 1;
@@ -38,7 +38,7 @@ LeafByTissue tissueLike(const BandOptics& optics) {
   return leaf;
 }
 
-// "carbon constituents" and "µg/cm²".
+// "carbon_constituents" and "ug/cm^2" as people write them.
 std::string spelled(std::string_view name) {
   std::string text(name);
   std::ranges::replace(text, '_', ' ');
