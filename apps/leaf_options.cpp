@@ -7,7 +7,6 @@
 #include "apps/csv_rows.hpp"
 #include "core/require.hpp"
 #include "leaves/measured_leaves.hpp"
-#include "leaves/prospect.hpp"
 
 namespace sunfleck::apps {
 
@@ -57,16 +56,18 @@ std::vector<WavelengthBand> bandsOf(const std::string& text, const std::string& 
   return bands;
 }
 
-BandOptics leafOpticsOf(const LeafOptions& options) {
-  LightBands bands;
-  if (!options.bands.empty()) {
-    const std::vector<WavelengthBand> all = bandsOf(options.bands, "--leaf-bands");
-    require(all.size() == kBands, "--leaf-bands: number of bands", all.size(), "3");
-    bands.emplace();
-    std::ranges::copy(all, bands->begin());
-  }
-  return bandOptics(prospect(leafContentsOf(options.species, options.prospect, "--leaf-species", "--leaf-prospect")),
-                    bands);
+LeafByContents leafOf(const LeafOptions& options) {
+  return {.species = options.species,
+          .contents = leafContentsOf(options.species, options.prospect, "--leaf-species", "--leaf-prospect")};
+}
+
+LightBands lightBandsOf(const LeafOptions& options) {
+  if (options.bands.empty()) return std::nullopt;
+  const std::vector<WavelengthBand> all = bandsOf(options.bands, "--leaf-bands");
+  require(all.size() == kBands, "--leaf-bands: number of bands", all.size(), "3");
+  LightBands bands(std::in_place);
+  std::ranges::copy(all, bands->begin());
+  return bands;
 }
 
 }  // namespace sunfleck::apps

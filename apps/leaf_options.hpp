@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "leaves/leaf_contents.hpp"
+#include "leaves/leaf_description.hpp"
 #include "leaves/leaf_spectrum.hpp"
 #include "leaves/light_bands.hpp"
 
@@ -27,7 +28,8 @@ struct LeafOptions {
   std::string species, prospect, bands;
   bool given() const { return !species.empty() || !prospect.empty(); }
 };
-// Throws InvalidInput, naming the option, on what is wrong.
-BandOptics leafOpticsOf(const LeafOptions& options);
+// What they tell. Both throw InvalidInput, naming the option, on what is wrong.
+LeafByContents leafOf(const LeafOptions& options);
+LightBands lightBandsOf(const LeafOptions& options);
 
 }  // namespace sunfleck::apps

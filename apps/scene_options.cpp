@@ -93,18 +93,27 @@ void changeLeaves(const SceneOptions& options, Scene& scene) {
   if (!options.leaves.bands.empty() && !options.leaves.given())
     throw InvalidInput("--leaf-bands: must be with --leaf-species or --leaf-prospect");
   if (!options.albedo && !options.leaves.given()) return;
+  LeafDescription leaf;
   BandOptics optics;
-  if (options.albedo)
+  if (options.albedo) {
     optics.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
-  else
-    optics = leafOpticsOf(options.leaves);
-  for (TreeKind& kind : scene.kinds)
+  } else {
+    scene.bands = lightBandsOf(options.leaves);
+    leaf = leafOf(options.leaves);
+    optics = bandOptics(leaf, scene.bands, {});
+  }
+  for (TreeKind& kind : scene.kinds) {
+    kind.description = leaf;
     for (std::size_t band = 0; band < kBands; ++band) {
       kind.leaf[band].reflectance = optics[band].reflectance;
       kind.leaf[band].transmittance = optics[band].transmittance;
     }
+  }
   for (SceneMedium& medium : scene.media)
-    if (!medium.particles) medium.optics = optics;
+    if (!medium.particles) {
+      medium.description = leaf;
+      medium.optics = optics;
+    }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "core/leaf_optics.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
+#include "leaves/leaf_description.hpp"
 #include "plants/import.hpp"
 #include "render/camera.hpp"
 #include "render/scene_medium.hpp"
@@ -36,7 +37,8 @@ struct TreeKind {
   TreeRecipe recipe;
   Dropped dropped;  // triangles of no area that the file held
   std::shared_ptr<const TreeMesh> mesh;
-  BandOptics leaf;
+  LeafDescription description;  // how its leaves are told; by numbers unless it says more
+  BandOptics leaf;  // by numbers these; else what follows from the description in the scene's bands; with the gloss
   glm::vec3 wood_reflectance{0.3f};  // Lambertian, per band [1], 0 .. 1
 };
 
@@ -69,6 +71,7 @@ struct Scene {
   std::string name;
   std::string origin;                       // the file or the name it was read from, with which messages begin
   std::vector<TreeKind> kinds{TreeKind{}};  // at least one
+  LightBands bands;                         // what the bands of leaves are that are told by contents; none: RGB
   Stand stand;
   std::vector<SceneMedium> media;  // of these, trace alone knows; trees may then be without leaves or without anything
   glm::vec3 ground_albedo{0.f};    // Lambertian, per band [1], 0 .. 1; other grounds, per band, in its place:

@@ -86,8 +86,8 @@ std::vector<Placement> square(int side, glm::vec2 spacing, std::size_t kinds) {
 }
 
 // `kind` has the scene's optics.
-void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const LightBands& bands,
-              const std::filesystem::path& folder, bool keep_optics) {
+void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const std::filesystem::path& folder,
+              bool keep_optics) {
   if (tree.has("file") && tree.has("species"))
     throw InvalidInput(scene.origin + ": [tree] has both file and species: must be one of them");
   if (tree.has("file")) {
@@ -109,20 +109,19 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
              static_cast<std::uint64_t>(tree.count("seed", 1, std::numeric_limits<int>::max())));
   }
   kind.name = tree.text("name", kind.name);
-  detail::readOptics(kind, tree, "leaf_", tree, "wood_", bands);
+  detail::readOptics(kind, tree, "leaf_", tree, "wood_", scene.bands);
   tree.done();
 }
 
-void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, const LightBands& bands,
-               const std::filesystem::path& file, bool keep_optics) {
+void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, const std::filesystem::path& file,
+               bool keep_optics) {
   const toml::array* several = node ? node->as_array() : nullptr;  // [[tree]]
   const std::size_t count = several ? several->size() : 1;
   if (count == 0) throw InvalidInput(scene.origin + ": tree = []: must be a table [tree], or a [[tree]] for each kind");
   scene.kinds.assign(count, optics);
   for (std::size_t i = 0; i < count; ++i) {
     const toml::node* table = several ? several->get(i) : node;
-    readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), bands, file.parent_path(),
-             keep_optics);
+    readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), file.parent_path(), keep_optics);
     for (std::size_t before = 0; before < i; ++before)
       if (scene.kinds[before].name == scene.kinds[i].name)
         throw InvalidInput(fmt::format("{}:{}: tree.name = \"{}\": must differ from that of the other kinds of trees",
@@ -264,14 +263,14 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   scene.origin = file.string();
   detail::SceneTable leaf = section("leaf"), wood = section("wood");
   TreeKind optics = kindWith(kPaperLeaf);
-  const LightBands bands = detail::readLightBands(leaf);
+  scene.bands = detail::readLightBands(leaf);
   const bool own_leaf = detail::tellsLeafShares(leaf, "");
-  detail::readOptics(optics, leaf, "", wood, "", bands);
+  detail::readOptics(optics, leaf, "", wood, "", scene.bands);
   for (const detail::SceneTable* read : {&leaf, &wood}) read->done();
   readGround(scene, section("ground"), file.parent_path());
-  if (const toml::node* media = table.get("medium")) detail::readMedia(scene, *media, optics.leaf, bands, file);
+  if (const toml::node* media = table.get("medium")) detail::readMedia(scene, *media, optics, file);
   if (scene.media.empty() || table.contains("tree")) {
-    readTrees(scene, table.get("tree"), optics, bands, file, own_leaf);
+    readTrees(scene, table.get("tree"), optics, file, own_leaf);
   } else {
     scene.kinds[0] = optics;
     scene.kinds[0].name = scene.kinds[0].source = "no tree";

@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "leaves/measured_leaves.hpp"
-#include "leaves/prospect.hpp"
-#include "leaves/slab_leaf.hpp"
 
 namespace sunfleck::detail {
 namespace {
@@ -30,30 +28,26 @@ void requireOneWay(const SceneTable& table, const std::string& prefix) {
   }
 }
 
-BandOptics opticsBySlab(SceneTable& table, const std::string& key) {
+LeafByTissue readTissue(SceneTable& table, const std::string& key) {
   SceneTable slab = table.within(key);
   for (const char* part : {"absorption", "scattering", "thickness"})
     if (!slab.has(part))
       throw InvalidInput(fmt::format("{}: {} has no {}: must have absorption, scattering and thickness", slab.file(),
                                      slab.name(), part));
-  const glm::vec3 absorption = slab.perBand("absorption", {}, 1e6), scattering = slab.perBand("scattering", {}, 1e6);
-  const double thickness = slab.number("thickness", 0., 0., 1000., "in [0, 1000] mm");
+  const LeafByTissue tissue{.absorption = slab.perBand("absorption", {}, 1e6),
+                            .scattering = slab.perBand("scattering", {}, 1e6),
+                            .thickness = slab.number("thickness", 0., 0., 1000., "in [0, 1000] mm")};
   slab.done();
-  BandOptics optics;
-  for (int band = 0; band < kBands; ++band)
-    optics[static_cast<std::size_t>(band)] = leafOptics(
-        slabLeaf(
-            {.absorption = double{absorption[band]}, .scattering = double{scattering[band]}, .thickness = thickness})
-            .sides);
-  return optics;
+  return tissue;
 }
 
-BandOptics opticsByContents(SceneTable& table, const std::string& prefix, const LightBands& bands) {
+LeafByContents readContents(SceneTable& table, const std::string& prefix) {
   const std::string species = prefix + "species", prospect_key = prefix + "prospect";
-  LeafContents leaf;
-  if (table.has(species))
-    leaf =
-        measuredLeaf(table.text(species, ""), fmt::format("{}: {}.{}", table.file(), table.name(), species)).contents;
+  LeafByContents leaf;
+  if (table.has(species)) {
+    leaf.species = table.text(species, "");
+    leaf.contents = measuredLeaf(leaf.species, fmt::format("{}: {}.{}", table.file(), table.name(), species)).contents;
+  }
   if (table.has(prospect_key)) {
     SceneTable contents = table.within(prospect_key);
     std::vector<std::pair<std::string, double>> values;
@@ -64,9 +58,9 @@ BandOptics opticsByContents(SceneTable& table, const std::string& prefix, const 
       if (contents.has(name)) values.emplace_back(name, contents.number(name, 0., content.low, content.high, rule));
     }
     contents.done();
-    setContents(leaf, values, fmt::format("{}: {}.", table.file(), contents.name()));
+    setContents(leaf.contents, values, fmt::format("{}: {}.", table.file(), contents.name()));
   }
-  return bandOptics(prospect(leaf), bands);
+  return leaf;
 }
 
 }  // namespace
@@ -87,17 +81,16 @@ bool tellsLeafShares(const SceneTable& table, const std::string& prefix) {
   });
 }
 
-void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, BandOptics& optics) {
+void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, LeafDescription& leaf,
+                    BandOptics& optics) {
   requireOneWay(table, prefix);
   const bool slab = table.has(prefix + "slab");
   if (slab || table.has(prefix + "species") || table.has(prefix + "prospect")) {
-    const BandOptics leaf = slab ? opticsBySlab(table, prefix + "slab") : opticsByContents(table, prefix, bands);
-    for (std::size_t band = 0; band < kBands; ++band) {
-      optics[band].reflectance = leaf[band].reflectance;
-      optics[band].transmittance = leaf[band].transmittance;
-    }
+    leaf = slab ? LeafDescription(readTissue(table, prefix + "slab")) : readContents(table, prefix);
+    optics = bandOptics(leaf, bands, optics);
     return;
   }
+  if (table.has(prefix + "reflectance") || table.has(prefix + "transmittance")) leaf = LeafByNumbers{};
   glm::vec3 reflectance, transmittance;
   for (int band = 0; band < kBands; ++band) {
     reflectance[band] = optics[static_cast<std::size_t>(band)].reflectance;
@@ -113,7 +106,7 @@ void readLeafShares(SceneTable& table, const std::string& prefix, const LightBan
 
 void readOptics(TreeKind& kind, SceneTable& leaf, const std::string& leaf_prefix, SceneTable& wood,
                 const std::string& wood_prefix, const LightBands& bands) {
-  readLeafShares(leaf, leaf_prefix, bands, kind.leaf);
+  readLeafShares(leaf, leaf_prefix, bands, kind.description, kind.leaf);
   glm::vec3 gloss;
   for (int band = 0; band < kBands; ++band) gloss[band] = kind.leaf[static_cast<std::size_t>(band)].gloss;
   gloss = leaf.perBand(leaf_prefix + "gloss", gloss);

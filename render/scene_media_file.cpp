@@ -9,7 +9,7 @@
 namespace sunfleck::detail {
 namespace {
 
-void readOptics(SceneMedium& medium, SceneTable& table, BandOptics optics, const LightBands& bands) {
+void readOptics(SceneMedium& medium, SceneTable& table, const TreeKind& of_scene, const LightBands& bands) {
   if (medium.particles) {
     const glm::vec3 albedo = table.perBand("albedo", glm::vec3(1.f));
     for (std::size_t band = 0; band < kBands; ++band)
@@ -17,8 +17,13 @@ void readOptics(SceneMedium& medium, SceneTable& table, BandOptics optics, const
     medium.asymmetry = static_cast<float>(table.number("asymmetry", 0., -0.999, 0.999, "in [-0.999, 0.999]"));
     return;
   }
-  if (medium.grid) optics = medium.grid->meanOptics().value_or(optics);
-  readLeafShares(table, "", bands, optics);
+  medium.description = of_scene.description;
+  BandOptics optics = of_scene.leaf;
+  if (const auto of_cells = medium.grid ? medium.grid->meanOptics() : std::nullopt) {
+    medium.description = LeafByNumbers{};
+    optics = *of_cells;
+  }
+  readLeafShares(table, "", bands, medium.description, optics);
   for (std::size_t band = 0; band < kBands; ++band) {
     medium.optics[band] = {.reflectance = optics[band].reflectance, .transmittance = optics[band].transmittance};
     validate(medium.optics[band]);
@@ -67,8 +72,7 @@ void readPlace(SceneMedium& medium, SceneTable& table, const std::filesystem::pa
 
 }  // namespace
 
-void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, const LightBands& bands,
-               const std::filesystem::path& file) {
+void readMedia(Scene& scene, const toml::node& node, const TreeKind& optics, const std::filesystem::path& file) {
   const toml::array* several = node.as_array();  // [[medium]]
   const std::size_t count = several ? several->size() : 1;
   if (count == 0)
@@ -81,7 +85,7 @@ void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, c
       throw InvalidInput(file.string() + ": medium.kind = \"" + kind + "\": must be leaves or particles");
     medium.particles = kind == "particles";
     readPlace(medium, table, file);
-    readOptics(medium, table, optics, bands);
+    readOptics(medium, table, optics, scene.bands);
     table.done();
   }
 }

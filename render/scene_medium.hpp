@@ -10,6 +10,7 @@
 #include "core/bounds.hpp"
 #include "core/leaf_optics.hpp"
 #include "grid/density_grid.hpp"
+#include "leaves/leaf_description.hpp"
 
 namespace sunfleck {
 
@@ -19,9 +20,10 @@ struct SceneMedium {
   static constexpr float kEndless = std::numeric_limits<float>::infinity();
 
   bool particles = false;
-  BandOptics optics;      // of the leaves; of particles the reflectance is the albedo
-  float asymmetry = 0.f;  // of particles, g of Henyey and Greenstein [1], -1 < g < 1
-  std::string angles;     // of leaves: LeafAngles::named(); empty: as the grid says, or spherical
+  LeafDescription description{};  // of the leaves, from which the optics follow unless it is by numbers
+  BandOptics optics;              // of the leaves; of particles the reflectance is the albedo
+  float asymmetry = 0.f;          // of particles, g of Henyey and Greenstein [1], -1 < g < 1
+  std::string angles;             // of leaves: LeafAngles::named(); empty: as the grid says, or spherical
   // The same everywhere in a box; along x and y it may have no end in a periodic stand.
   Bounds box{.low = glm::vec3(-kEndless), .high = glm::vec3(kEndless)};  // [m]
   float density = 0.f;  // leaf area density, or extinction by particles [1/m]

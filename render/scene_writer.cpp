@@ -12,6 +12,7 @@
 
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
+#include "leaves/measured_leaves.hpp"
 #include "render/radians.hpp"
 
 namespace sunfleck {
@@ -23,8 +24,10 @@ template <typename Same>
 std::string shortest(double value, const Same& same) {
   constexpr int kAllDigits = 17;
   for (int digits = 1; digits <= kAllDigits; ++digits)
-    if (std::string text = fmt::format("{:.{}g}", value, digits); same(std::strtod(text.c_str(), nullptr)))
+    if (const double read = std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); same(read)) {
+      const std::string text = fmt::format("{}", read);
       return text == "-0" ? "-0.0" : text;  // TOML's whole numbers have no -0
+    }
   throw InvalidInput(fmt::format("number in a scene = {}: must be finite", value));
 }
 
@@ -74,6 +77,28 @@ std::string texts(const std::vector<std::string>& all) {
   return list + "]";
 }
 
+// The keys of what is different from the species or, without one, from the usual leaf.
+std::string changedContents(const LeafByContents& leaf) {
+  const LeafContents from = leaf.species.empty() ? LeafContents{} : measuredLeaf(leaf.species).contents;
+  std::string keys;
+  for (const LeafContent& content : leafContents())
+    if (leaf.contents.*content.value != from.*content.value)
+      keys += fmt::format("{}{} = {}", keys.empty() ? "" : ", ", content.name, number(leaf.contents.*content.value));
+  return keys;
+}
+
+std::string inlineTable(const std::string& keys) {
+  return keys.empty() ? "{}" : "{ " + keys + " }";
+}
+
+std::string bands(const std::array<WavelengthBand, kBands>& all) {
+  std::string text;
+  for (const WavelengthBand& band : all)
+    text += (text.empty() ? "[" : ", ") +
+            (band.low == band.high ? number(band.low) : fmt::format("[{}, {}]", number(band.low), number(band.high)));
+  return text + "]";
+}
+
 class Writer {
  public:
   Writer(const Scene& scene, const fs::path& folder)
@@ -87,6 +112,8 @@ class Writer {
     const bool treeless =
         scene_.kinds[static_cast<std::size_t>(std::ranges::find(stands, 1) - stands.begin())].mesh->leaf_count == 0;
     if (treeless && scene_.media.empty()) refuse("has neither trees nor media");
+    if (treeless || scene_.bands) table("leaf");
+    if (scene_.bands) key("bands_nm", bands(*scene_.bands));
     if (treeless) writeOptics(scene_.kinds.front());
     for (std::size_t kind = 0; !treeless && kind < scene_.kinds.size(); ++kind)
       if (stands[kind]) writeTree(scene_.kinds[kind], std::ranges::count(stands, 1) > 1);
@@ -120,23 +147,37 @@ class Writer {
     return quoted((from_here.empty() ? there : from_here).generic_string());
   }
 
-  // Keys of leaves and wood, alone or each with the first of these before it.
-  void writeLeaf(const TreeKind& kind, const std::string& prefix) {
-    glm::vec3 reflectance, transmittance, gloss;
-    for (std::size_t band = 0; band < kBands; ++band) {
-      const int b = static_cast<int>(band);
-      reflectance[b] = kind.leaf[band].reflectance;
-      transmittance[b] = kind.leaf[band].transmittance;
-      gloss[b] = kind.leaf[band].gloss;
+  // Reflectance and transmittance, as they are told; each key with `prefix` before it.
+  void writeShares(const LeafDescription& leaf, const BandOptics& optics, const std::string& prefix) {
+    if (const auto* contents = std::get_if<LeafByContents>(&leaf)) {
+      if (!contents->species.empty()) key(prefix + "species", quoted(contents->species));
+      const std::string changed = changedContents(*contents);
+      if (contents->species.empty() || !changed.empty()) key(prefix + "prospect", inlineTable(changed));
+    } else if (const auto* tissue = std::get_if<LeafByTissue>(&leaf)) {
+      key(prefix + "slab",
+          inlineTable(fmt::format("absorption = {}, scattering = {}, thickness = {}", perBand(tissue->absorption),
+                                  perBand(tissue->scattering), number(tissue->thickness))));
+    } else {
+      glm::vec3 reflectance, transmittance;
+      for (std::size_t band = 0; band < kBands; ++band) {
+        reflectance[static_cast<int>(band)] = optics[band].reflectance;
+        transmittance[static_cast<int>(band)] = optics[band].transmittance;
+      }
+      key(prefix + "reflectance", perBand(reflectance));
+      key(prefix + "transmittance", perBand(transmittance));
     }
-    key(prefix + "reflectance", perBand(reflectance));
-    key(prefix + "transmittance", perBand(transmittance));
+  }
+
+  // Keys of leaves, alone or each with `prefix` before it.
+  void writeLeaf(const TreeKind& kind, const std::string& prefix) {
+    writeShares(kind.description, kind.leaf, prefix);
+    glm::vec3 gloss;
+    for (std::size_t band = 0; band < kBands; ++band) gloss[static_cast<int>(band)] = kind.leaf[band].gloss;
     key(prefix + "gloss", perBand(gloss));
     key(prefix + "gloss_roughness", number(kind.leaf[0].gloss_roughness));
   }
 
   void writeOptics(const TreeKind& kind) {
-    table("leaf");
     writeLeaf(kind, "");
     table("wood");
     key("reflectance", perBand(kind.wood_reflectance));
@@ -186,18 +227,15 @@ class Writer {
         key("top", number(medium.box.high.z));
       }
     }
-    glm::vec3 reflectance, transmittance;
-    for (std::size_t band = 0; band < kBands; ++band) {
-      reflectance[static_cast<int>(band)] = medium.optics[band].reflectance;
-      transmittance[static_cast<int>(band)] = medium.optics[band].transmittance;
-    }
     if (medium.particles) {
-      key("albedo", perBand(reflectance));
+      glm::vec3 albedo;
+      for (std::size_t band = 0; band < kBands; ++band)
+        albedo[static_cast<int>(band)] = medium.optics[band].reflectance;
+      key("albedo", perBand(albedo));
       key("asymmetry", number(medium.asymmetry));
       return;
     }
-    key("reflectance", perBand(reflectance));
-    key("transmittance", perBand(transmittance));
+    writeShares(medium.description, medium.optics, "");
     if (!medium.angles.empty()) key("angles", quoted(medium.angles));
   }
 

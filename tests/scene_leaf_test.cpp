@@ -115,6 +115,81 @@ bands_nm = [[620, 680], 850, 450.5]
   EXPECT_EQ(readScene((folder_ / "again.toml").string()).kinds[0].leaf, scene.kinds[0].leaf);
 }
 
+// Check that a scene written and read again tells the leaves of its kinds and media as it did, to the bit, and writes
+// no more than what is different from a species.
+TEST_F(SceneLeaf, IsWrittenAsItIsTold) {
+  for (const std::string bands : {"", "bands_nm = [[620, 680.5], 550, 850]\n"}) {
+    const Scene scene = readScene(write("s.toml", "[leaf]\n" + bands + R"(gloss = 0.1
+slab = { absorption = [2.0, 0.3, 4.0], scattering = 10.1, thickness = 0.123456789012345 }
+[[tree]]
+file = "tree.obj"
+name = "tissue"
+[[tree]]
+file = "tree.obj"
+name = "species"
+leaf_species = "beech"
+[[tree]]
+file = "tree.obj"
+name = "changed"
+leaf_species = "corn"
+leaf_prospect = { protein = 0.001, carbon_constituents = 0.004 }
+[[tree]]
+file = "tree.obj"
+name = "contents"
+leaf_prospect = { chlorophyll = 31.41592653589793, dry_matter = 0.0 }
+[[tree]]
+file = "tree.obj"
+name = "usual"
+leaf_prospect = {}
+[[tree]]
+file = "tree.obj"
+name = "numbers"
+leaf_reflectance = 0.1
+[[medium]]
+density = 1.0
+box = [0, 0, 0, 1, 1, 1]
+species = "clover"
+[[medium]]
+density = 1.0
+box = [0, 0, 0, 1, 1, 1]
+[stand]
+kind = "positions"
+positions = [[0, 0], [3, 0], [6, 0], [9, 0], [12, 0], [15, 0]]
+)"));
+    EXPECT_TRUE(std::holds_alternative<LeafByNumbers>(scene.kinds[5].description));
+    EXPECT_EQ(scene.kinds[0].description, scene.media[1].description);
+    const std::string text = sceneText(scene, folder_);
+    for (const char* line :
+         {"leaf_slab = { absorption = [2, 0.3, 4], scattering = 10.1, thickness = 0.123456789012345 }",
+          "leaf_species = \"beech\"\nleaf_gloss", "leaf_prospect = {}\n",
+          "leaf_prospect = { chlorophyll = 31.41592653589793, dry_matter = 0 }", "leaf_reflectance = 0.1\n",
+          "\nspecies = \"clover\"\n"})
+      EXPECT_NE(text.find(line), std::string::npos) << line << " is not in\n" << text;
+    const Scene again = readScene(write("again.toml", text));
+    EXPECT_EQ(again.bands, scene.bands);
+    EXPECT_EQ(again.bands.has_value(), !bands.empty());
+    ASSERT_EQ(again.kinds.size(), 6u);
+    for (std::size_t kind = 0; kind < 6; ++kind) {
+      EXPECT_EQ(again.kinds[kind].description, scene.kinds[kind].description) << kind;
+      EXPECT_EQ(again.kinds[kind].leaf, scene.kinds[kind].leaf) << kind;
+    }
+    ASSERT_EQ(again.media.size(), 2u);
+    for (std::size_t medium = 0; medium < 2; ++medium) {
+      EXPECT_EQ(again.media[medium].description, scene.media[medium].description);
+      EXPECT_EQ(again.media[medium].optics, scene.media[medium].optics);
+    }
+  }
+  // Of a medium alone.
+  const Scene alone = readScene(write("s.toml",
+                                      "[leaf]\nspecies = \"beech\"\nbands_nm = [650, 550, 450]\n[medium]\ndensity = "
+                                      "1.0\nbottom = 0\ntop = 1\n[stand]\nkind = \"periodic\"\nperiod = [1, 1]\n"));
+  const Scene again = readScene(write("again.toml", sceneText(alone, folder_)));
+  EXPECT_EQ(again.bands, alone.bands);
+  EXPECT_EQ(again.kinds[0].description, LeafDescription(leafOfSpecies("beech")));
+  EXPECT_EQ(again.media[0].description, alone.media[0].description);
+  EXPECT_EQ(again.media[0].optics, alone.media[0].optics);
+}
+
 // Check leaves that are slabs of tissue, and that three numbers are those of the three bands.
 TEST_F(SceneLeaf, IsASlabOfTissue) {
   const Scene scene = readScene(write("s.toml", R"(

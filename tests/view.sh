@@ -246,6 +246,49 @@ runs open.txt saved.toml
 cmp -s shown.png opened.png || fail "the saved scene looks different"
 "$program" render saved.toml -o rendered.png >/dev/null 2>stderr.txt || fail "render of the saved scene: $(cat stderr.txt)"
 
+# Leaves told by what they are: other pictures each, undone, and a saved scene that tells them so.
+cat >leaves.txt <<'END'
+panels off
+samples 2
+resize 80 60
+wait ready
+screenshot numbers.png
+leaf species beech
+wait ready
+screenshot species.png
+leaf prospect chlorophyll 10
+wait ready
+screenshot changed.png
+save changed.toml
+leaf slab all 0.5 10 0.2
+leaf slab blue 5 10 0.2
+wait ready
+screenshot slab.png
+save slab.toml
+undo 3
+wait ready
+screenshot undone.png
+expect same species.png undone.png
+undo
+wait ready
+screenshot undone.png
+expect same numbers.png undone.png
+END
+runs leaves.txt trees.toml
+for pair in "numbers species" "species changed" "changed slab"; do
+  set -- $pair
+  cmp -s "$1.png" "$2.png" && fail "$1.png and $2.png are the same"
+done
+grep -qxF 'leaf_species = "beech"' changed.toml && grep -qxF 'leaf_prospect = { chlorophyll = 10 }' changed.toml ||
+  fail "changed.toml: $(grep leaf_ changed.toml)"
+grep -qxF 'leaf_slab = { absorption = [0.5, 0.5, 5], scattering = 10, thickness = 0.2 }' slab.toml ||
+  fail "slab.toml: $(grep leaf_ slab.toml)"
+for file in changed slab; do
+  printf 'panels off\nsamples 2\nresize 80 60\nwait ready\nscreenshot opened.png\n' >open.txt
+  runs open.txt $file.toml
+  cmp -s $file.png opened.png || fail "the saved scene $file.toml looks different"
+done
+
 # The script that the documentation shows.
 awk '/^    # turn the sun/ { shows = 1 } shows && !/^    / { exit } shows' \
   "$tests/../docs/VIEWER.md" | sed 's/^    //; s/^samples 16/panels off\nresize 90 60\nsamples 2/; s/0\.05 /0.5 /' >shown.txt
@@ -312,6 +355,8 @@ stops 2 'wrong.txt:2: no.obj' '\nkind no.obj\n\n'
 stops 2 'wrong.txt:1: tree = 9: must be' 'select 9\n'
 stops 2 'wrong.txt:1: model = "none": must be one of ss' 'model none\n'
 stops 2 'wrong.txt:1: x.gif' 'screenshot x.gif\n'
+stops 2 'wrong.txt:1: leaf species = "oak": must be one of' 'leaf species oak\n'
+stops 2 'wrong.txt:1: leaf prospect: sugar: must be one of' 'leaf prospect sugar 1\n'
 stops 2 'wrong.txt:1: no tree is selected' 'move 1 1\n'
 stops 2 'wrong.txt:2: camera "x"' '\ncamera load x\n'
 stops 2 'wrong.txt:1: directions' 'directions 3\n'

@@ -10,6 +10,7 @@
 
 #include "apps/view/session.hpp"
 #include "core/require.hpp"
+#include "leaves/prospect.hpp"
 #include "render/compare/exact_powers.hpp"
 #include "render/stand_field.hpp"
 #include "tests/random_leaves.hpp"
@@ -212,6 +213,64 @@ TEST(Session, ComputesAnewWhatAnEditNeedsAlone) {
   session.undo();
   ASSERT_TRUE(settle(session));
   EXPECT_EQ(session.document().scene.sun().zenith, 0.f);
+}
+
+// Check that reflectance and transmittance follow from how the leaves are told, in the scene's bands, beside the gloss;
+// that undo brings both back; that a drag is one step; and that a kind that comes has the scene's bands.
+TEST(Session, TellsLeavesByWhatTheyAre) {
+  Document document = smallDocument();
+  document.scene.bands = {{{620., 680.}, {550., 550.}, {850., 850.}}};
+  Session session("small", [&] { return document; });
+  ASSERT_TRUE(settle(session));
+  recomputed(session);
+  const auto kind = [&]() -> const TreeKind& { return session.document().scene.kinds[0]; };
+  const BandOptics before = kind().leaf;
+  BandOptics glossy = before;
+  for (LeafOptics& band : glossy) band.gloss = 0.2f;
+  const auto tell = [&](const LeafDescription& leaf, std::uint64_t gesture = 0) {
+    session.edit(SetOptics{0, glossy, glm::vec3(0.3f), leaf}, gesture);
+  };
+  const LeafByContents beech = leafOfSpecies("beech");
+  tell(beech);
+  const BandOptics expected = bandOptics(prospect(beech.contents), session.document().scene.bands);
+  for (std::size_t band = 0; band < kBands; ++band) {
+    EXPECT_EQ(kind().leaf[band].reflectance, expected[band].reflectance);
+    EXPECT_EQ(kind().leaf[band].transmittance, expected[band].transmittance);
+    EXPECT_EQ(kind().leaf[band].gloss, 0.2f);
+  }
+  const BandOptics of_beech = kind().leaf;
+  for (const double chlorophyll : {30., 20., 10.}) {
+    LeafByContents pale = beech;
+    pale.contents.chlorophyll = chlorophyll;
+    tell(pale, 5);
+  }
+  EXPECT_GT(kind().leaf[1].reflectance, of_beech[1].reflectance);  // less of what absorbs green
+  const BandOptics of_pale = kind().leaf;
+  tell(LeafByTissue{.absorption = {1.5f, 0.4f, 0.f}, .scattering = glm::vec3(10.f), .thickness = 0.2});
+  EXPECT_NEAR(kind().leaf[2].albedo(), 1.f, 1e-6f);  // nothing absorbs: to single precision and the solver's 1e-10
+  session.undo();
+  EXPECT_EQ(kind().leaf, of_pale);
+  session.undo();
+  EXPECT_EQ(kind().description, LeafDescription(beech));
+  EXPECT_EQ(kind().leaf, of_beech);
+  session.undo();
+  EXPECT_EQ(kind().description, LeafDescription());
+  EXPECT_EQ(kind().leaf, before);
+  session.redo();
+  EXPECT_EQ(kind().description, LeafDescription(beech));
+  EXPECT_EQ(kind().leaf, of_beech);
+  // What cannot be changes nothing.
+  EXPECT_THROW(tell(LeafByContents{.species = "oak", .contents = {}}), InvalidInput);
+  EXPECT_THROW(tell(LeafByContents{.species = {}, .contents = {.chlorophyll = -1.}}), InvalidInput);
+  EXPECT_THROW(tell(LeafByTissue{.absorption = glm::vec3(-1.f)}), InvalidInput);
+  EXPECT_EQ(kind().leaf, of_beech);
+  TreeKind other = document.scene.kinds[0];
+  other.description = beech;
+  other.leaf = bandOptics(other.description, std::nullopt, glossy);
+  EXPECT_NE(other.leaf, of_beech);
+  session.edit(AddKind{other, {9.f, 0.f, 0.f}});
+  EXPECT_EQ(session.document().scene.kinds[1].leaf, of_beech);
+  ASSERT_TRUE(settle(session));
 }
 
 // A field is there when it has been solved along lines, and its preview counts with it as what a change made.

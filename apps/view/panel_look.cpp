@@ -28,57 +28,6 @@ const char* aboutOf(Model model) {
   return "";
 }
 
-void Panels::drawLeaf(Session& session) {
-  const Scene& scene = session.document().scene;
-  kind = std::min(kind, static_cast<std::uint32_t>(scene.kinds.size() - 1));
-  if (scene.kinds.size() > 1 && ImGui::BeginCombo("kind", scene.kinds[kind].name.c_str())) {
-    for (std::uint32_t i = 0; i < scene.kinds.size(); ++i)
-      if (ImGui::Selectable(scene.kinds[i].name.c_str(), i == kind)) kind = i;
-    ImGui::EndCombo();
-  }
-  BandOptics leaf = scene.kinds[kind].leaf;
-  glm::vec3 wood = scene.kinds[kind].wood_reflectance;
-  bool edited = false;
-  heading("Leaves");
-  float albedo = 0.f;
-  for (const LeafOptics& band : leaf) albedo += band.albedo() / static_cast<float>(kBands);
-  if (changed(ImGui::SliderFloat("albedo", &albedo, 0.f, 1.f, "%.3f"), session)) {
-    for (LeafOptics& band : leaf) band.reflectance = band.transmittance = 0.5f * albedo;
-    edited = true;
-  }
-  tip("Share of light that leaves scatter, half of it reflected, in all bands; 0.95 in the paper's experiment");
-  glm::vec3 reflectance, transmittance;
-  for (int band = 0; band < kBands; ++band) {
-    reflectance[band] = leaf[static_cast<std::size_t>(band)].reflectance;
-    transmittance[band] = leaf[static_cast<std::size_t>(band)].transmittance;
-  }
-  const bool by_reflectance =
-      changed(ImGui::DragFloat3("reflectance", &reflectance.x, 0.002f, 0.f, 1.f, "%.3f"), session);
-  tip("Share sent back on the side it came from: red, green, blue");
-  const bool by_transmittance =
-      changed(ImGui::DragFloat3("transmittance", &transmittance.x, 0.002f, 0.f, 1.f, "%.3f"), session);
-  tip("Share sent on through the leaf: red, green, blue. With the reflectance at most 1");
-  for (int band = 0; band < kBands && (by_reflectance || by_transmittance); ++band) {
-    LeafOptics& of = leaf[static_cast<std::size_t>(band)];
-    of.reflectance = by_reflectance ? std::min(reflectance[band], 1.f - of.transmittance) : of.reflectance;
-    of.transmittance = by_transmittance ? std::min(transmittance[band], 1.f - of.reflectance) : of.transmittance;
-    edited = true;
-  }
-  float gloss = leaf[0].gloss, roughness = leaf[0].gloss_roughness;
-  if (changed(ImGui::SliderFloat("gloss", &gloss, 0.f, 1.f, "%.2f"), session)) edited = true;
-  tip("Intensity of a glossy reflection on both sides; the shares above are then of the light it lets in");
-  if (changed(ImGui::SliderFloat("roughness", &roughness, kLeastGlossRoughness, 1.f, "%.2f"), session)) edited = true;
-  tip("Of the gloss: root mean square slope of its facets");
-  for (LeafOptics& band : leaf) {
-    band.gloss = gloss;
-    band.gloss_roughness = roughness;
-  }
-  heading("Wood");
-  edited |= changed(ImGui::ColorEdit3("reflectance##wood", &wood.x, ImGuiColorEditFlags_Float), session);
-  tip("Lambertian, per band, 0 to 1");
-  if (edited) session.attempt([&] { session.edit(SetOptics{kind, leaf, wood}, gesture); });
-}
-
 void Panels::drawModel(Session& session) {
   const Document& document = session.document();
   Look& look = session.look;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/view/session.hpp"
+#include "leaves/leaf_description.hpp"
 #include "render/compare/picture_difference.hpp"
 
 namespace sunfleck::view {
@@ -66,6 +67,7 @@ struct Panels {
   float paint_radius = 5.f, paint_spacing = 3.f;  // [m]
   std::size_t sun = 0;                            // that is edited
   std::uint64_t gesture = 0;
+  std::string measured_species = "beech";  // the last one chosen
   // What is typed.
   std::string new_kind = "maple", date = "2026-06-21", time = "12:00", camera_name = "view";
   int new_seed = 1;
@@ -89,6 +91,10 @@ struct Panels {
   void drawSky(Session& session);
   void drawSkyImage(Session& session, const SceneSky& sky);
   void drawLeaf(Session& session);
+  bool chooseDescription(LeafDescription& leaf, const BandOptics& optics, Session& session);
+  bool drawNumbers(BandOptics& leaf, Session& session);
+  bool drawContents(LeafByContents& leaf, Session& session);
+  bool drawTissue(LeafByTissue& leaf, Session& session);
   void drawModel(Session& session);
   void drawCompare(Session& session, const FrameReport& report);
   void drawProbe(Session& session, const FrameReport& report);

@@ -21,8 +21,9 @@ struct SetGround {
 };
 struct SetOptics {
   std::size_t kind;
-  BandOptics leaf;
-  glm::vec3 wood_reflectance;  // [1], 0 .. 1
+  BandOptics leaf;                   // of leaves that are told by numbers; of others the gloss alone
+  glm::vec3 wood_reflectance;        // [1], 0 .. 1
+  LeafDescription description = {};  // how the leaves are told
 };
 struct SetModel {
   Model model;

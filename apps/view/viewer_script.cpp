@@ -149,7 +149,12 @@ void Viewer::executeEdit(const ScriptStep& step) {
     session_.edit(SetEffort{effort});
   };
   BandOptics leaf = scene.kinds[kind].leaf;
-  const auto setLeaf = [&] { session_.edit(SetOptics{kind, leaf, scene.kinds[kind].wood_reflectance}); };
+  const auto setLeaf = [&](const LeafDescription& told) {
+    session_.edit(SetOptics{kind, leaf, scene.kinds[kind].wood_reflectance, told});
+  };
+  const auto named_band = [&](std::size_t band) {
+    return step.texts[0] == "all" || step.texts[0] == std::array{"red", "green", "blue"}[band];
+  };
   switch (step.verb) {
     case Verb::sun: {
       std::vector<Sun> suns = scene.suns;
@@ -179,20 +184,39 @@ void Viewer::executeEdit(const ScriptStep& step) {
           {number(step, 0), number(step, 1, number(step, 0)), number(step, 2, number(step, 1, number(step, 0)))}});
     case Verb::leaf_albedo:
       for (LeafOptics& band : leaf) band.reflectance = band.transmittance = 0.5f * number(step, 0);
-      return setLeaf();
+      return setLeaf(LeafByNumbers{});
+    case Verb::leaf_species:
+      return setLeaf(leafOfSpecies(step.texts[0]));
+    case Verb::leaf_prospect: {
+      const auto* has = std::get_if<LeafByContents>(&scene.kinds[kind].description);
+      LeafByContents told = has ? *has : LeafByContents{};
+      setContents(told.contents, std::array{std::pair(step.texts[0], step.numbers[0])}, "leaf prospect: ");
+      return setLeaf(told);
+    }
+    case Verb::leaf_slab: {
+      const auto* has = std::get_if<LeafByTissue>(&scene.kinds[kind].description);
+      LeafByTissue told = has ? *has : LeafByTissue{};
+      for (int band = 0; band < kBands; ++band)
+        if (!has || named_band(static_cast<std::size_t>(band))) {
+          told.absorption[band] = number(step, 0);
+          told.scattering[band] = number(step, 1);
+        }
+      told.thickness = step.numbers[2];
+      return setLeaf(told);
+    }
     case Verb::leaf:
       for (std::size_t band = 0; band < kBands; ++band)
-        if (step.texts[0] == "all" || step.texts[0] == std::array{"red", "green", "blue"}[band]) {
+        if (named_band(band)) {
           leaf[band].reflectance = number(step, 0);
           leaf[band].transmittance = number(step, 1);
         }
-      return setLeaf();
+      return setLeaf(LeafByNumbers{});
     case Verb::gloss:
       for (LeafOptics& band : leaf) {
         band.gloss = number(step, 0);
         band.gloss_roughness = number(step, 1, band.gloss_roughness);
       }
-      return setLeaf();
+      return setLeaf(scene.kinds[kind].description);
     case Verb::model:
       return session_.edit(SetModel{named(step.texts[0], kModels, "model", [](Model m) { return nameOf(m); })});
     case Verb::directions:

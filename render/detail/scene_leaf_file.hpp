@@ -13,9 +13,10 @@ LightBands readLightBands(SceneTable& leaf);
 bool tellsLeafShares(const SceneTable& table, const std::string& prefix);
 
 // Reflectance and transmittance of leaves: those of the table, as numbers, by species and contents, or as a slab of
-// tissue, under keys with `prefix` before them, or else those that `optics` has already. Throws InvalidInput as
-// readScene() does, and on a table that tells them in two ways.
-void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, BandOptics& optics);
+// tissue, under keys with `prefix` before them, or else those that `leaf` and `optics` have already. Throws
+// InvalidInput as readScene() does, and on a table that tells them in two ways.
+void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, LeafDescription& leaf,
+                    BandOptics& optics);
 
 // Optics of leaves and wood: those of the tables, or else those that the kind has already.
 void readOptics(TreeKind& kind, SceneTable& leaf, const std::string& leaf_prefix, SceneTable& wood,

@@ -8,9 +8,8 @@
 
 namespace sunfleck::detail {
 
-// Adds to a scene what a table [medium], or the tables [[medium]], of its file say. `optics`: of leaves, unless they
-// have their own, by species in these bands. Throws InvalidInput as readScene() does.
-void readMedia(Scene& scene, const toml::node& node, const BandOptics& optics, const LightBands& bands,
-               const std::filesystem::path& file);
+// Adds to a scene what a table [medium], or the tables [[medium]], of its file say. `optics`, and how they are
+// told: of leaves, unless they have their own, by species in these bands. Throws InvalidInput as readScene() does.
+void readMedia(Scene& scene, const toml::node& node, const TreeKind& optics, const std::filesystem::path& file);
 
 }  // namespace sunfleck::detail
