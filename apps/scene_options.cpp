@@ -98,7 +98,7 @@ void changeLeaves(const SceneOptions& options, Scene& scene) {
   if (options.albedo) {
     optics.fill({.reflectance = 0.5f * *options.albedo, .transmittance = 0.5f * *options.albedo});
   } else {
-    scene.bands = lightBandsOf(options.leaves);
+    if (!options.leaves.bands.empty()) scene.bands = lightBandsOf(options.leaves);
     leaf = leafOf(options.leaves);
     optics = bandOptics(leaf, scene.bands, {});
   }

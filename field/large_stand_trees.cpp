@@ -231,8 +231,10 @@ std::vector<std::vector<float>> LargeStandField::scatteredOnce(std::span<const s
     tbb::parallel_for(std::size_t{0}, of_turns.size(), [&](std::size_t number) {
       Turn& turn = *turns_[turn_of_tree_[now[of_turns[number].front()]]];
       const Kind& kind = *kinds_[turn.kind];
-      const SunlitEnds ends(kind.elements, kind.exchange, turn.rotation, lit_->lines[sun], pictureOf(turn, sun));
-      tbb::parallel_for(std::size_t{0}, of_turns[number].size(), [&](std::size_t k) {
+      const SunlitEnds ends = tbb::this_task_arena::isolate([&] {
+        return SunlitEnds(kind.elements, kind.exchange, turn.rotation, lit_->lines[sun], pictureOf(turn, sun));
+      });
+      const auto bringTo = [&](std::size_t k) {
         const std::size_t i = of_turns[number][k];
         const std::vector<glm::vec3> brought = ends.scatteredOnce(directLight(now[i], sun), lit_->pixels[sun][now[i]]);
         for (std::size_t b = 0; b < bands; ++b) {
@@ -245,7 +247,9 @@ std::vector<std::vector<float>> LargeStandField::scatteredOnce(std::span<const s
           for (std::size_t side = 0; side < brought.size(); ++side) of_band[side] += glm::dot(share, brought[side]);
         }
         progress.add(kOfDirect / static_cast<double>(lighting.suns.size()));
-      });
+      };
+      // A thread that waits for others would else begin with other turns, and hold their ends as well.
+      tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, of_turns[number].size(), bringTo); });
     });
   return once;
 }

@@ -35,7 +35,6 @@ struct TreePicture {
   glm::ivec2 low{0}, size{0};       // first pixel, and how many
   std::vector<float> depth;         // of the side along the light, infinite where there is none [m]
   std::vector<std::uint32_t> side;  // 2 element (front) or 2 element + 1 (back)
-  std::size_t memoryBytes() const { return depth.size() * 8; }
 };
 TreePicture treePicture(const TreeMesh& mesh, const FieldElements& elements, float rotation, const SunLines& lines);
 

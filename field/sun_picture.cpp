@@ -96,7 +96,8 @@ class RowSweep {
     const std::uint32_t last = std::min(until_, behind.end) - 1;
     if (last == x || !(behind.depthAt(last) < nearest_->depthAt(last))) return;
     const float parts = (behind.depthAt(x) - nearest_->depthAt(x)) / (nearest_->slope - behind.slope);
-    until_ = x + 1 + static_cast<std::uint32_t>(std::clamp(parts, 0.f, static_cast<float>(last - x - 1)));
+    // Not a number where rounding alone tells them apart.
+    until_ = x + 1 + (parts > 0.f ? static_cast<std::uint32_t>(std::min(parts, static_cast<float>(last - x - 1))) : 0);
     next_ = &behind;
   }
 

@@ -67,11 +67,13 @@ class GltfReader {
     ImportedStand stand;
     stand.stand.trees.clear();
     std::vector<GltfFaces> faces;
+    std::size_t left = most_;
     for (const auto& kind : kinds) {
-      faces.emplace_back(model_, materials_, most_, source_);
+      faces.emplace_back(model_, materials_, left, source_);
       for (const Posture* posture : kind) faces.back().add({posture->mesh, posture->node, glm::dmat4(posture->linear)});
+      left -= std::max(faces.back().faces.vertices.size(), faces.back().faces.triangles.size());
     }
-    faces.emplace_back(model_, materials_, most_, source_);
+    faces.emplace_back(model_, materials_, left, source_);
     std::set<int> standing;  // meshes that are in a kind
     for (const Posture& posture : *postures) standing.insert(posture.mesh);
     for (const PlacedMesh& placed : placed_)

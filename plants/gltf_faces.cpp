@@ -27,13 +27,12 @@ GltfFaces::GltfFaces(const tinygltf::Model& model, const std::vector<GltfMateria
       any_masks_(std::ranges::any_of(materials, hasMask)) {}
 
 void GltfFaces::add(const PlacedMesh& placed) {
-  std::map<std::pair<int, int>, Corners> known;  // by accessors of positions and texture coordinates
+  KnownCorners known;
   for (const tinygltf::Primitive& primitive : model_.meshes[static_cast<std::size_t>(placed.mesh)].primitives)
     addPrimitive(primitive, placed, known);
 }
 
-void GltfFaces::addPrimitive(const tinygltf::Primitive& primitive, const PlacedMesh& placed,
-                             std::map<std::pair<int, int>, Corners>& known) {
+void GltfFaces::addPrimitive(const tinygltf::Primitive& primitive, const PlacedMesh& placed, KnownCorners& known) {
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
   const auto position = primitive.attributes.find("POSITION");
   if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN || position == primitive.attributes.end()) {
@@ -50,7 +49,7 @@ void GltfFaces::addPrimitive(const tinygltf::Primitive& primitive, const PlacedM
     if (const auto at = primitive.attributes.find("TEXCOORD_" + std::to_string(material->texture_coordinates));
         at != primitive.attributes.end())
       texture = at->second;
-  const auto [found, is_new] = known.try_emplace({position->second, texture});
+  const auto [found, is_new] = known.try_emplace({position->second, texture, texture < 0 ? -1 : primitive.material});
   if (is_new) found->second = addVertices(position->second, texture, material, placed.to_world);
   const Corners of = found->second;
   std::vector<std::uint32_t> corners;
@@ -85,6 +84,7 @@ GltfFaces::Corners GltfFaces::addVertices(int positions, int texture, const Gltf
   }
   if (texture < 0) return added;
   const Numbers coordinates(model_, texture, source_ + ": TEXCOORD");
+  coordinates.requireType(TINYGLTF_TYPE_VEC2, "of two numbers");
   require(coordinates.size() == added.count, source_ + ": number of texture coordinates", coordinates.size(),
           "that of the vertices, " + std::to_string(added.count));
   added.first_texture = static_cast<std::uint32_t>(faces.texture.size());

@@ -106,10 +106,9 @@ class ObjParser {
   // Takes the next line off; it ends with a line feed, a carriage return or both.
   std::string_view nextLine(std::string_view& left) {
     ++line_;
-    const std::size_t feed = std::min(left.find('\n'), left.size());
-    const std::size_t end = std::min(left.substr(0, feed).find('\r'), feed);
+    const std::size_t end = std::min(left.find_first_of("\r\n"), left.size());
     const std::string_view line = left.substr(0, end);
-    const bool both = end + 1 == feed;
+    const bool both = left.substr(end).starts_with("\r\n");
     left.remove_prefix(std::min(left.size(), end + (both ? 2 : 1)));
     return line;
   }

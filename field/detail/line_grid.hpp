@@ -47,9 +47,7 @@ struct StandSurfaces {
 // one, they cover a period as the direction sees it from the ground, and lines repeat as the stand does.
 class LineGrid {
  public:
-  //   area    that `finer` lines of a row stand for, across them [m^2]; with a period as near as whole numbers of
-  //   pixels
-  //           come to it
+  //   area    that `finer` lines of a row stand for, across them [m^2]; with a period about, as pixels are whole
   //   offset  of the pixels' grid, in pixels [1], 0 .. 1
   //   finer   pixels' height by their width [1]
   LineGrid(const StandSurfaces& surfaces, Direction along, double area, glm::dvec2 offset, int finer = 1);

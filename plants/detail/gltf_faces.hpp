@@ -35,8 +35,9 @@ class GltfFaces {
     std::size_t count;
   };
 
-  void addPrimitive(const tinygltf::Primitive& primitive, const PlacedMesh& placed,
-                    std::map<std::pair<int, int>, Corners>& known);
+  // Of accessors of positions and texture coordinates, and the material that moves these.
+  using KnownCorners = std::map<std::tuple<int, int, int>, Corners>;
+  void addPrimitive(const tinygltf::Primitive& primitive, const PlacedMesh& placed, KnownCorners& known);
   Corners addVertices(int positions, int texture, const GltfMaterial* material, const glm::dmat4& to_world);
   void addTriangles(const std::vector<std::uint32_t>& corners, int mode, const Corners& of, std::uint32_t part);
   std::uint32_t partOf(const tinygltf::Primitive& primitive, const PlacedMesh& placed);

@@ -46,6 +46,10 @@ class Numbers {
             accessor_->componentType, rule);
   }
 
+  void requireType(int type, const char* rule) const {
+    require(accessor_->type == type, what_ + ": type", accessor_->type, rule);
+  }
+
   float real(std::size_t element, std::size_t component) const {
     float value = 0.f;
     std::memcpy(&value, data_ + element * stride_ + component * sizeof value, sizeof value);
