@@ -6,6 +6,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/csv_rows.hpp"
+#include "apps/distinct_files.hpp"
 #include "apps/leaf_options.hpp"
 #include "apps/leaf_output.hpp"
 #include "apps/leaf_tissue.hpp"
@@ -38,6 +39,9 @@ std::string_view headerOf(const std::string& file) {
 }
 
 void readMeasured(const std::string& file, LeafReport& leaf) {
+  std::error_code failure;
+  if (std::filesystem::exists(file, failure) && !std::filesystem::is_regular_file(file, failure))
+    throw InvalidInput(file + ": cannot be read: it is no regular file");
   const std::string_view header = headerOf(file);
   const bool reflectance_first = header != kHeaders[2];
   for (const CsvRow& row : readCsvRows(file, header)) {
@@ -89,6 +93,8 @@ int runLeaf(const LeafCommand& options, const RunOptions& run) {
   for (const auto& [file, extension] :
        {std::pair(&options.csv, ".csv"), {&options.bands_csv, ".csv"}, {&options.plot, ".svg"}})
     if (!file->empty()) requireNamed(*file, extension);
+  for (const std::string* file : {&options.csv, &options.bands_csv}) requireOther(*file, options.fit);
+  requireOther(options.bands_csv, options.csv);
   LeafReport leaf;
   if (!options.bands.empty()) leaf.bands = bandsOf(options.bands, "--bands");
   if (!options.fit.empty()) {

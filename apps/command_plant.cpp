@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
+#include "apps/distinct_files.hpp"
 #include "apps/gallery.hpp"
 #include "apps/import_options.hpp"
 #include "apps/plant_report.hpp"
@@ -169,6 +170,15 @@ void requireOutput(const PlantOptions& options) {
   require(known, "output file", options.output,
           fmt::format("named with one of the extensions {}", fmt::join(endings, " ")));
   requireWritable(options.output);
+  if (isFile(options.input)) requireOther(options.output, options.input);
+}
+
+// Meshes hold no masks: a scene file does, by naming the mesh file and how its cards are taken.
+void requireWithoutMasks(const Plant& plant, const PlantOptions& options) {
+  if (options.output.empty() || fs::path(options.output).extension() == ".toml") return;
+  for (const TreeKind& kind : plant.kinds)
+    if (!kind.mesh->masks.empty())
+      throw InvalidInput(options.output + ": must be a .toml file, as the leaves have masks, or --cards cut or whole");
 }
 
 // Of a file: a stand, or the tree alone.
@@ -200,7 +210,9 @@ int runPlant(const PlantOptions options, const RunOptions& run) {
   if (options.input == kTurbidEllipsoid) return writeTurbidEllipsoid(options, run);
   requireOutput(options);
   if (!options.thumbnail.empty()) requireNamed(options.thumbnail, ".png");
+  requireOther(options.thumbnail, options.input);
   const Plant plant = plantOf(options, run);
+  requireWithoutMasks(plant, options);
   const TreeMesh& mesh = *plant.kinds.front().mesh;
   std::optional<Scene> stand;
   if (plant.isStand() && !options.stand.kind.empty())

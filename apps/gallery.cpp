@@ -66,12 +66,14 @@ void writeGallery(const std::filesystem::path& sheet_file, const std::vector<std
   Sheet sheet = blank(names.size() + files.size());
   const Progress progress = terminalProgress("drawing", run.quiet);
   std::size_t done = 0;
-  const auto next = [&](const std::string& name, const TreeMesh& mesh) {
-    draw(sheet, done++, name, mesh);
-    if (progress) progress(static_cast<double>(done) / static_cast<double>(names.size() + files.size()));
+  const auto drawAt = [&](std::size_t place, const std::string& name, const TreeMesh& mesh) {
+    draw(sheet, place, name, mesh);
+    if (progress) progress(static_cast<double>(++done) / static_cast<double>(names.size() + files.size()));
   };
-  for (const std::string& name : names) next(name, grow(species(name), run.seed));
-  for (const std::string& file : files) next(std::filesystem::path(file).filename().string(), *treeOf(file, rules));
+  // Files first: one that cannot be read is refused before long work.
+  for (std::size_t i = 0; i < files.size(); ++i)
+    drawAt(names.size() + i, std::filesystem::path(files[i]).filename().string(), *treeOf(files[i], rules));
+  for (std::size_t i = 0; i < names.size(); ++i) drawAt(i, names[i], grow(species(names[i]), run.seed));
   writePng(sheet_file, sheet.width, sheet.height, sheet.colours);
 }
 

@@ -28,17 +28,31 @@ glm::dmat4 placed(const glm::dvec3& move, const glm::dquat& turn, const glm::dve
   return matrix;
 }
 
-glm::dmat4 matrixOf(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) {
+glm::dquat unitTurn(const glm::dquat& turn, const std::string& source) {
+  const double length = glm::length(turn);
+  require(std::abs(length - 1.) <= 0.01, source + ": length of a rotation", length, "1");
+  return turn / length;
+}
+
+glm::dmat4 matrixOf(const tinygltf::Node& node, const std::string& source) {
+  const auto requireCount = [&](const std::vector<double>& numbers, std::size_t count, const char* name) {
+    require(numbers.empty() || numbers.size() == count, source + ": numbers of a node's " + name, numbers.size(),
+            std::to_string(count));
+  };
+  requireCount(node.matrix, 16, "matrix");
+  requireCount(node.translation, 3, "translation");
+  requireCount(node.rotation, 4, "rotation");
+  requireCount(node.scale, 3, "scale");
+  if (!node.matrix.empty()) {
     glm::dmat4 matrix;
     for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
     return matrix;
   }
   const auto three = [](const std::vector<double>& v, double fallback) {
-    return v.size() == 3 ? glm::dvec3(v[0], v[1], v[2]) : glm::dvec3(fallback);
+    return v.empty() ? glm::dvec3(fallback) : glm::dvec3(v[0], v[1], v[2]);
   };
   const std::vector<double>& r = node.rotation;
-  const glm::dquat turn = r.size() == 4 ? glm::dquat(r[3], r[0], r[1], r[2]) : glm::dquat(1., 0., 0., 0.);
+  const glm::dquat turn = r.empty() ? glm::dquat(1., 0., 0., 0.) : unitTurn(glm::dquat(r[3], r[0], r[1], r[2]), source);
   return placed(three(node.translation, 0.), turn, three(node.scale, 1.));
 }
 
@@ -71,9 +85,9 @@ std::vector<glm::dmat4> instancesOf(const tinygltf::Model& model, const tinygltf
     const auto three = [&](const std::optional<Numbers>& n, double fallback) {
       return n ? glm::dvec3(n->real(i, 0), n->real(i, 1), n->real(i, 2)) : glm::dvec3(fallback);
     };
-    const glm::dquat rotation = turn
-                                    ? glm::dquat(turn->real(i, 3), turn->real(i, 0), turn->real(i, 1), turn->real(i, 2))
-                                    : glm::dquat(1., 0., 0., 0.);
+    const glm::dquat rotation =
+        turn ? unitTurn({turn->real(i, 3), turn->real(i, 0), turn->real(i, 1), turn->real(i, 2)}, source)
+             : glm::dquat(1., 0., 0., 0.);
     places.push_back(placed(three(move, 0.), rotation, three(scale, 1.)));
   }
   return places;
@@ -106,7 +120,7 @@ std::vector<PlacedMesh> placedMeshes(const tinygltf::Model& model, const std::st
     require(!seen[index], source + ": node", visit.node, "below one other node alone");
     seen[index] = 1;
     const tinygltf::Node& node = model.nodes[index];
-    const glm::dmat4 to_world = visit.to_world * matrixOf(node);
+    const glm::dmat4 to_world = visit.to_world * matrixOf(node, source);
     if (node.mesh >= 0) {
       require(static_cast<std::size_t>(node.mesh) < model.meshes.size(), source + ": mesh", node.mesh,
               "one of the file's");

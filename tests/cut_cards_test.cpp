@@ -224,6 +224,22 @@ TEST_F(Cards, GltfIsCut) {
   EXPECT_EQ(asked_bytes, 8u);
   EXPECT_THROW(areaOf(mask, "", R"({"uri":"data:image/png;base64,AAAA"})"), InvalidInput);
   EXPECT_THROW(importTree(file("t.gltf", model(mask, "", R"({"uri":"leaf.png"})"))), InvalidInput);  // no reader
+  const auto refusedWith = [&](const std::string& part, const std::string& other) {
+    std::string text = model(mask, "", R"({"uri":"leaf.png"})");
+    text.replace(text.find(part), part.size(), other);
+    try {
+      importTree(file("t.gltf", text), {}, reader);
+    } catch (const InvalidInput& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const auto names = [](const std::string& message, const char* what) {
+    return message.find(what) != std::string::npos;
+  };
+  EXPECT_TRUE(names(refusedWith("VEC2", "SCALAR"), "TEXCOORD: type"));
+  EXPECT_TRUE(names(refusedWith(R"({"mesh":0})", R"({"mesh":0,"rotation":[3,4,5,6]})"), "length of a rotation"));
+  EXPECT_TRUE(names(refusedWith(R"({"mesh":0})", R"({"mesh":0,"matrix":[1,0,0]})"), "numbers of a node's matrix"));
 }
 
 // Check leaves: triangles with corners of their own that share an edge's places are one leaf, a touch at one place does

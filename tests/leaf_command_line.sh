@@ -55,6 +55,10 @@ refuses "water = nan: must be in [0, 10] cm" leaf --prospect water=nan
 refuses "structure = 0.99: must be in [1, 10]" leaf --prospect structure=0.99
 refuses "dry_matter = 0.01: must be 0 beside" leaf --prospect protein=0.001,dry_matter=0.01
 refuses "water: must be there once" leaf --prospect water=0.1,water=0.1
+cp beech.csv kept.csv
+refuses "must be another file than kept.csv" leaf --fit kept.csv --csv kept.csv
+cmp beech.csv kept.csv || fail "what was measured is written over"
+refuses "it is no regular file" leaf --fit /dev/zero
 refuses "--bands = 300: must be in [400, 2500] nm" leaf --bands 300
 refuses "--bands = 500: must be at least the band's lower limit" leaf --bands 600:500
 refuses "--bands: width = 0: must be at least 1 nm" leaf --bands 400:500:0
