@@ -30,8 +30,8 @@ class HostileFiles : public testing::Test {
 
   // What importing ends with, without the folder; "read" when it succeeds. It may take `times` the file's size in
   // memory, and what loading an image's libraries and small things take.
-  std::string outcome(const fs::path& path, double times = 30.) const {
-    const long before = peak();
+  std::string outcome(const fs::path& path, [[maybe_unused]] double times = 30.) const {
+    [[maybe_unused]] const long before = peak();
     std::string text = "read";
     try {
       importStand(path, {}, readOpacity);

@@ -40,6 +40,12 @@ bool same(const Document& a, const Document& b) {
          a.selected == b.selected;
 }
 
+SceneEdit optics(std::size_t kind, const glm::vec3& wood, const BandOptics& leaf = {}) {
+  SceneEdit edit;
+  edit.emplace<SetOptics>(kind, leaf, wood);
+  return edit;
+}
+
 SceneEdit randomEdit(const Document& document, Random& random) {
   const auto place = [&] { return glm::vec3(20.f * random.uniform(), 20.f * random.uniform(), 0.f); };
   const std::size_t trees = document.scene.stand.trees.size();
@@ -52,7 +58,7 @@ SceneEdit randomEdit(const Document& document, Random& random) {
     case 2:
       return SetGround{glm::vec3(random.uniform())};
     case 3:
-      return SetOptics{0, BandOptics{}, glm::vec3(random.uniform())};
+      return optics(0, glm::vec3(random.uniform()));
     case 4:
       return SetModel{kModels[static_cast<std::size_t>(3.f * random.uniform())]};
     case 5:
@@ -142,9 +148,9 @@ TEST(EditHistory, ChangesNothingByAWrongEdit) {
       SetSky{{.kind = SceneSky::Kind::image}},
       SetGround{glm::vec3(1.5f)},
       SetGround{glm::vec3(nan)},
-      SetOptics{1, BandOptics{}, glm::vec3(0.f)},
-      SetOptics{0, BandOptics{LeafOptics{.reflectance = 0.9f, .transmittance = 0.9f}}, glm::vec3(0.f)},
-      SetOptics{0, BandOptics{}, glm::vec3(-1.f)},
+      optics(1, glm::vec3(0.f)),
+      optics(0, glm::vec3(0.f), {LeafOptics{.reflectance = 0.9f, .transmittance = 0.9f}}),
+      optics(0, glm::vec3(-1.f)),
       SetEffort{{.sample_directions = 3}},
       SetEffort{{.light_resolution = 0}},
       SetEffort{{.cells = 65}},
