@@ -8,7 +8,8 @@ square() {
   awk -v h="$(awk "BEGIN { printf \"%.9g\", $1 / 2 }")" -v z="$2" -v times="${3:-1}" 'BEGIN {
     print "usemtl leaf"
     for (i = 0; i < times; ++i) {
-      printf "v %.9g %.9g %g\nv %.9g %.9g %g\nv %.9g %.9g %g\nv %.9g %.9g %g\n", -h, -h, z, h, -h, z, h, h, z, -h, h, z
+      if (i > 0) z += 1e-6  # leaves at one and the same place would be one
+      printf "v %.9g %.9g %.9g\nv %.9g %.9g %.9g\nv %.9g %.9g %.9g\nv %.9g %.9g %.9g\n", -h, -h, z, h, -h, z, h, h, z, -h, h, z
       printf "f %d %d %d %d\n", 4 * i + 1, 4 * i + 2, 4 * i + 3, 4 * i + 4
     } }'
 }
