@@ -167,13 +167,13 @@ std::string leafJson(const LeafReport& leaf) {
       species["measured"].push_back(bandJson(leaf.species->bands[i], leaf.species->measured[i]));
   }
   if (leaf.fit) json["fit"] = fitJson(leaf);
-  Json &wavelengths = json["spectrum"]["wavelength_nm"], &reflectance = json["spectrum"]["reflectance"],
-       &transmittance = json["spectrum"]["transmittance"];
+  Json wavelengths = Json::array(), reflectance = Json::array(), transmittance = Json::array();
   for (std::size_t i = 0; i < leaf.spectrum.sides.size(); ++i) {
     wavelengths.push_back(kFirstWavelength + static_cast<int>(i));
     reflectance.push_back(leaf.spectrum.sides[i].reflectance);
     transmittance.push_back(leaf.spectrum.sides[i].transmittance);
   }
+  json["spectrum"] = {{"wavelength_nm", wavelengths}, {"reflectance", reflectance}, {"transmittance", transmittance}};
   return json.dump(2) + "\n";
 }
 

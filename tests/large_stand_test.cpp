@@ -341,6 +341,7 @@ TEST(LargeStand, EndsWhenItIsTold) {
       const auto found = field.solve(lighting, seen, far, progress).trees;
       for (std::size_t tree = 0; tree < expected.size(); ++tree) {
         ASSERT_EQ(found[tree].size(), expected[tree].size());
+        if (found[tree].empty()) continue;
         EXPECT_EQ(std::memcmp(found[tree].data(), expected[tree].data(), found[tree].size() * sizeof(LeafLight)), 0);
       }
       EXPECT_TRUE(std::ranges::equal(field.farSides(2), expected_far));
