@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/require.hpp"
-
 namespace sunfleck {
 namespace {
 
@@ -52,14 +50,14 @@ glm::dvec2 inPixels(const LeafMask& mask, const glm::dvec2& corner) {
 
 }  // namespace
 
-bool LeafMask::at(const MaskCorners& corners, float second, float third) const {
+bool LeafMask::at(const ImageCorners& corners, float second, float third) const {
   const glm::vec2 point = (1.f - second - third) * corners[0] + second * corners[1] + third * corners[2];
   const glm::dvec2 pixel = inPixels(*this, point);
   return opaque[wrapped(pixel.y, height) * static_cast<std::size_t>(width) + wrapped(pixel.x, width)] != 0;
 }
 
 // Row by row of pixels, in runs of pixels that are leaf.
-double opaqueShare(const LeafMask& mask, const MaskCorners& corners) {
+double opaqueShare(const LeafMask& mask, const ImageCorners& corners) {
   Polygon triangle;
   for (const glm::vec2& corner : corners) triangle.push_back(inPixels(mask, corner));
   double area = 0.;
@@ -82,17 +80,6 @@ double opaqueShare(const LeafMask& mask, const MaskCorners& corners) {
     }
   }
   return std::min(area / areaOf(triangle), 1.);
-}
-
-void validate(const MaskCorners& corners, const std::string& what) {
-  for (const glm::vec2& corner : corners)
-    for (int axis = 0; axis < 2; ++axis)
-      require(std::abs(corner[axis]) <= kMostMaskRepeats, what + ": texture coordinate", corner[axis],
-              "finite and at most 8 in size");
-  const glm::dvec2 a = glm::dvec2(corners[1]) - glm::dvec2(corners[0]),
-                   b = glm::dvec2(corners[2]) - glm::dvec2(corners[0]);
-  require(std::abs(a.x * b.y - a.y * b.x) > 1e-12, what + ": area of its texture coordinates",
-          0.5 * std::abs(a.x * b.y - a.y * b.x), "above 0, as its material has a mask");
 }
 
 }  // namespace sunfleck

@@ -22,32 +22,40 @@ double shareOf(const std::vector<double>& shares, std::size_t triangle) {
   return shares.empty() ? 1. : shares[triangle];
 }
 
-void checkCuts(const TreeMesh& mesh, const std::string& source) {
-  if (mesh.leaf_cuts.empty()) return;
-  require(mesh.leaf_cuts.size() == mesh.leaf_triangles.size(), source + ": number of masked leaf triangles",
-          mesh.leaf_cuts.size(), "that of the leaf triangles");
-  for (std::size_t i = 0; i < mesh.leaf_cuts.size(); ++i) {
-    const LeafCut& cut = mesh.leaf_cuts[i];
-    if (cut.mask == LeafCut::kWhole) continue;
-    const std::string what = source + ": leaf triangle " + std::to_string(i + 1);
-    require(cut.mask < mesh.masks.size(), what + " mask", cut.mask, "below the number of masks");
-    validate(cut.corners, what);
+// Those that bear a mask must be of use; of others, those of no use are dropped.
+void checkPatches(TreeMesh& mesh, const std::string& source) {
+  if (mesh.patch_of_triangle.empty()) return;
+  require(mesh.patch_of_triangle.size() == mesh.leaf_triangles.size(),
+          source + ": number of leaf triangles with images", mesh.patch_of_triangle.size(),
+          "that of the leaf triangles");
+  const auto nameOf = [&](std::size_t triangle) { return source + ": leaf triangle " + std::to_string(triangle + 1); };
+  for (std::size_t i = 0; i < mesh.patch_of_triangle.size(); ++i) {
+    std::uint32_t& number = mesh.patch_of_triangle[i];
+    if (number == TreeMesh::kNoPatch) continue;
+    if (number >= mesh.patches.size()) require(false, nameOf(i) + " patch", number, "below the number of patches");
+    const LeafPatch& patch = mesh.patches[number];
+    if (patch.mask == LeafPatch::kNoMask) {
+      if (!isUsable(patch.corners)) number = TreeMesh::kNoPatch;
+      continue;
+    }
+    if (patch.mask >= mesh.masks.size()) require(false, nameOf(i) + " mask", patch.mask, "below the number of masks");
+    if (!isUsable(patch.corners)) validate(patch.corners, nameOf(i));
   }
 }
 
-// Drops leaf triangles of no area, and those whose mask leaves nothing of them, with their cuts and their leaves.
+// Drops leaf triangles of no area, and those whose mask leaves nothing of them, with their patches and their leaves.
 std::size_t dropFlatLeaves(TreeMesh& mesh, const std::vector<double>& shares) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i) {
     if (!hasArea(triangleArea(mesh, mesh.leaf_triangles[i]) * shareOf(shares, i))) continue;
     mesh.leaf_triangles[kept] = mesh.leaf_triangles[i];
-    if (!mesh.leaf_cuts.empty()) mesh.leaf_cuts[kept] = mesh.leaf_cuts[i];
+    if (!mesh.patch_of_triangle.empty()) mesh.patch_of_triangle[kept] = mesh.patch_of_triangle[i];
     if (!mesh.leaf_of_triangle.empty()) mesh.leaf_of_triangle[kept] = mesh.leaf_of_triangle[i];
     ++kept;
   }
   const std::size_t dropped = mesh.leaf_triangles.size() - kept;
   mesh.leaf_triangles.resize(kept);
-  if (!mesh.leaf_cuts.empty()) mesh.leaf_cuts.resize(kept);
+  if (!mesh.patch_of_triangle.empty()) mesh.patch_of_triangle.resize(kept);
   if (!mesh.leaf_of_triangle.empty()) mesh.leaf_of_triangle.resize(kept);
   return dropped;
 }
@@ -55,12 +63,12 @@ std::size_t dropFlatLeaves(TreeMesh& mesh, const std::vector<double>& shares) {
 // The share of each leaf triangle that its mask leaves; nothing where there are no masks. Most of a tree's cards bear
 // the same part of the image, of which the share is computed once.
 std::vector<double> leafShares(const TreeMesh& mesh) {
-  if (mesh.leaf_cuts.empty()) return {};
+  if (mesh.masks.empty()) return {};
   std::vector<double> shares(mesh.leaf_triangles.size(), 1.);
   std::map<std::tuple<std::uint32_t, float, float, float, float, float, float>, double> known;
-  for (std::size_t i = 0; i < mesh.leaf_cuts.size(); ++i) {
-    const auto& [mask, c] = mesh.leaf_cuts[i];
-    if (mask == LeafCut::kWhole) continue;
+  for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i) {
+    if (!isCut(mesh, i)) continue;
+    const auto& [c, mask] = *patchOf(mesh, i);
     const auto [at, is_new] = known.try_emplace({mask, c[0].x, c[0].y, c[1].x, c[1].y, c[2].x, c[2].y}, 0.);
     if (is_new) at->second = opaqueShare(*mesh.masks[mask], c);
     shares[i] = at->second;
@@ -114,7 +122,7 @@ Dropped finish(TreeMesh& mesh, const std::string& source) {
   requireVertices(mesh, source);
   requireIndices(mesh, mesh.leaf_triangles, source + ": leaf");
   requireIndices(mesh, mesh.wood_triangles, source + ": wood");
-  checkCuts(mesh, source);
+  checkPatches(mesh, source);
   if (mesh.leaf_of_triangle.size() != mesh.leaf_triangles.size()) mesh.leaf_of_triangle.clear();
   for (const std::uint32_t leaf : mesh.leaf_of_triangle)
     if (leaf >= mesh.leaf_triangles.size())
@@ -127,6 +135,17 @@ Dropped finish(TreeMesh& mesh, const std::string& source) {
                        " wood triangles): at least one leaf with an area is needed");
   groupConnectedLeaves(mesh, std::vector<std::uint32_t>(std::move(mesh.leaf_of_triangle)));
   return dropped;
+}
+
+const LeafPatch* patchOf(const TreeMesh& mesh, std::size_t leaf_triangle) {
+  if (mesh.patch_of_triangle.empty()) return nullptr;
+  const std::uint32_t patch = mesh.patch_of_triangle[leaf_triangle];
+  return patch == TreeMesh::kNoPatch ? nullptr : &mesh.patches[patch];
+}
+
+bool isCut(const TreeMesh& mesh, std::size_t leaf_triangle) {
+  const LeafPatch* const patch = patchOf(mesh, leaf_triangle);
+  return patch && patch->mask != LeafPatch::kNoMask;
 }
 
 double triangleArea(const TreeMesh& mesh, const glm::uvec3& triangle) {

@@ -27,7 +27,7 @@ void requireFieldStand(std::span<const std::shared_ptr<const TreeMesh>> kinds, c
       require(std::abs(tree.position[axis]) <= 1e6f, name + " position", tree.position[axis],
               "finite and at most 1e6 m in size");
     require(std::isfinite(tree.rotation), name + " rotation", tree.rotation, "finite");
-    require(kinds[tree.kind]->leaf_cuts.empty(), name + " leaf masks", kinds[tree.kind]->masks.size(),
+    require(kinds[tree.kind]->masks.empty(), name + " leaf masks", kinds[tree.kind]->masks.size(),
             "0: the field would take the whole triangles");
   }
   for (std::size_t kind = 0; kind < kinds.size(); ++kind)

@@ -17,8 +17,9 @@ std::string meshHash(const TreeMesh& mesh) {
   add(mesh.vertices);
   add(mesh.leaf_triangles);
   add(mesh.wood_triangles);
-  if (!mesh.leaf_cuts.empty()) {
-    add(mesh.leaf_cuts);
+  if (!mesh.masks.empty()) {
+    add(mesh.patches);
+    add(mesh.patch_of_triangle);
     for (const auto& mask : mesh.masks) {
       add(std::array{mask->width, mask->height});
       add(mask->opaque);

@@ -24,7 +24,7 @@ constexpr float kSmallestTree = 1e-4f;  // [m]
 // What becomes of the leaf triangles of a material.
 struct Treatment {
   bool left_out = false;
-  std::uint32_t mask = LeafCut::kWhole;
+  std::uint32_t mask = LeafPatch::kNoMask;
 };
 
 // Opacities by material, whose images are read once.
@@ -45,7 +45,7 @@ class Treatments {
     if (rules_.cards == ImportRules::Cards::whole) return {};
     const auto [known, is_new] = masks_.try_emplace(
         {opacity.image.string(), opacity.bytes.data(), opacity.factor, opacity.least, opacity.by_alpha, opacity.moved},
-        LeafCut::kWhole);
+        LeafPatch::kNoMask);
     if (!is_new) return {.mask = known->second};
     const std::shared_ptr<const LeafMask> mask = maskOf(opacity, read_image_, source_);
     if (!mask) return {};
@@ -63,14 +63,23 @@ class Treatments {
   std::map<std::tuple<std::string, const char*, float, float, bool, bool>, std::uint32_t> masks_;
 };
 
-MaskCorners cornersOf(const NamedTriangles& faces, std::size_t triangle) {
-  MaskCorners corners;
+ImageCorners cornersOf(const NamedTriangles& faces, std::size_t triangle) {
+  ImageCorners corners;
   corners.fill(glm::vec2(std::numeric_limits<float>::quiet_NaN()));
   if (faces.texture_corners.empty()) return corners;
   for (int c = 0; c < 3; ++c)
     if (const std::uint32_t at = faces.texture_corners[triangle][c]; at < faces.texture.size())
       corners[static_cast<std::size_t>(c)] = faces.texture[at];
   return corners;
+}
+
+// To a leaf triangle just added.
+void addPatch(TreeMesh& mesh, const NamedTriangles& faces, std::size_t triangle, std::uint32_t mask) {
+  if (faces.texture_corners.empty() && mesh.masks.empty()) return;
+  const ImageCorners corners = cornersOf(faces, triangle);
+  const bool known = mask != LeafPatch::kNoMask || isUsable(corners);
+  mesh.patch_of_triangle.push_back(known ? static_cast<std::uint32_t>(mesh.patches.size()) : TreeMesh::kNoPatch);
+  if (known) mesh.patches.push_back({corners, mask});
 }
 
 void toMetresZUp(std::vector<glm::vec3>& vertices, const ImportRules& rules, bool format_y_up) {
@@ -85,8 +94,8 @@ void toMetresZUp(std::vector<glm::vec3>& vertices, const ImportRules& rules, boo
 
 double areaOfCards(const TreeMesh& mesh) {
   double area = 0.;
-  for (std::size_t i = 0; i < mesh.leaf_cuts.size(); ++i)
-    if (mesh.leaf_cuts[i].mask != LeafCut::kWhole) area += triangleArea(mesh, mesh.leaf_triangles[i]);
+  for (std::size_t i = 0; i < mesh.leaf_triangles.size(); ++i)
+    if (isCut(mesh, i)) area += triangleArea(mesh, mesh.leaf_triangles[i]);
   return area;
 }
 
@@ -115,10 +124,7 @@ ImportedTree assemble(NamedTriangles faces, const Verdict& verdict, const Import
       ++left_out;
     } else {
       tree.mesh.leaf_triangles.push_back(faces.triangles[i]);
-      if (!tree.mesh.masks.empty()) {
-        const std::uint32_t mask = of_part[part].mask;
-        tree.mesh.leaf_cuts.push_back({mask, mask == LeafCut::kWhole ? MaskCorners{} : cornersOf(faces, i)});
-      }
+      addPatch(tree.mesh, faces, i, of_part[part].mask);
     }
   }
   if (left_out > 0) tree.how += "; left out " + std::to_string(left_out) + " leaf triangles of transparent materials";
@@ -133,8 +139,8 @@ void complete(ImportedTree& tree, const ImportRules& rules, bool format_y_up, co
   const bool cards = !mesh.masks.empty();
   tree.card_area = areaOfCards(mesh);
   double others = 0.;  // area of leaves that no mask cuts [m^2]
-  for (std::size_t i = 0; i < mesh.leaf_cuts.size(); ++i)
-    if (mesh.leaf_cuts[i].mask == LeafCut::kWhole) others += triangleArea(mesh, mesh.leaf_triangles[i]);
+  for (std::size_t i = 0; cards && i < mesh.leaf_triangles.size(); ++i)
+    if (!isCut(mesh, i)) others += triangleArea(mesh, mesh.leaf_triangles[i]);
   if (cards && rules.cards == ImportRules::Cards::cut) {
     cutCards(mesh, source);
     tree.how += "; leaves are cut out of cards";

@@ -98,10 +98,10 @@ class LeafGrouper {
         continue;
       }
       triangles[number] = triangles[i];
-      if (!mesh_.leaf_cuts.empty()) mesh_.leaf_cuts[number] = mesh_.leaf_cuts[i];
+      if (!mesh_.patch_of_triangle.empty()) mesh_.patch_of_triangle[number] = mesh_.patch_of_triangle[i];
     }
     triangles.resize(kept_places.size());
-    if (!mesh_.leaf_cuts.empty()) mesh_.leaf_cuts.resize(kept_places.size());
+    if (!mesh_.patch_of_triangle.empty()) mesh_.patch_of_triangle.resize(kept_places.size());
     return count - kept_places.size();
   }
 

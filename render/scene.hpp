@@ -10,6 +10,7 @@
 
 #include "core/directions.hpp"
 #include "core/ground_texture.hpp"
+#include "core/leaf_maps.hpp"
 #include "core/leaf_optics.hpp"
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
@@ -39,6 +40,8 @@ struct TreeKind {
   std::shared_ptr<const TreeMesh> mesh;
   LeafDescription description;  // how its leaves are told; by numbers unless it says more
   BandOptics leaf;  // by numbers these; else what follows from the description in the scene's bands; with the gloss
+  // Where leaves are not alike on both sides and at all places: what each does, of which `leaf` is the mean.
+  std::shared_ptr<const LeafMaps> maps;
   glm::vec3 wood_reflectance{0.3f};  // Lambertian, per band [1], 0 .. 1
 };
 

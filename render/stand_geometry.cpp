@@ -107,7 +107,7 @@ void requireStand(const Scene& scene) {
 
 void requireWholeLeaves(const Scene& scene, const std::string& what) {
   for (const TreeKind& kind : scene.kinds)
-    if (!kind.mesh->leaf_cuts.empty())
+    if (!kind.mesh->masks.empty())
       throw InvalidInput(beginning(scene) + "\"" + kind.name +
                          "\" has leaves that masks cut out (cards = \"mask\"): must be cut to triangles for " + what +
                          " (trace alone takes masks)");

@@ -30,8 +30,10 @@ const LeafMask kQuarters{.width = 2, .height = 2, .opaque = {1, 0, 0, 1}};
 void addCard(TreeMesh& mesh, const glm::vec3& centre, const glm::vec3& half_a, const glm::vec3& half_b) {
   addPolygon(mesh, mesh.leaf_triangles, rectangle(centre, half_a, half_b));
   const glm::vec2 low(0.f), right(1.f, 0.f), high(1.f), up(0.f, 1.f);
-  mesh.leaf_cuts.push_back({0, {low, right, high}});
-  mesh.leaf_cuts.push_back({0, {low, high, up}});
+  for (const ImageCorners& corners : {ImageCorners{low, right, high}, ImageCorners{low, high, up}}) {
+    mesh.patch_of_triangle.push_back(static_cast<std::uint32_t>(mesh.patches.size()));
+    mesh.patches.push_back({corners, 0});
+  }
 }
 
 struct Cards {
@@ -102,7 +104,7 @@ TEST(LeafMask, SharesAreExact) {
   LeafMask mask{.width = 7, .height = 5, .opaque = {}};
   for (int i = 0; i < 35; ++i) mask.opaque.push_back(random.uniform() < 0.6f);
   for (int i = 0; i < 20; ++i) {
-    MaskCorners corners;
+    ImageCorners corners;
     for (glm::vec2& c : corners) c = glm::vec2(3.f * random.uniform() - 1.f, 3.f * random.uniform() - 1.f);
     constexpr int kSteps = 300;
     int found = 0, all = 0;
@@ -125,22 +127,22 @@ TEST(LeafMask, MeshesHaveTheAreaThatIsLeft) {
   TreeMesh mesh;
   mesh.masks.push_back(std::make_shared<const LeafMask>(kQuarters));
   addCard(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  mesh.leaf_cuts[1].corners = {glm::vec2(0.f), {0.4f, 0.4f}, {0.1f, 0.4f}};  // nothing of it is leaf
+  mesh.patches[1].corners = {glm::vec2(0.f), {0.4f, 0.4f}, {0.1f, 0.4f}};  // nothing of it is leaf
   TreeMesh half = mesh;
   EXPECT_EQ(finish(half, "half").leaf_triangles, 1u);
-  EXPECT_EQ(half.leaf_cuts.size(), 1u);
+  EXPECT_EQ(half.patch_of_triangle.size(), 1u);
   EXPECT_NEAR(leafArea(half), 1., 1e-12);  // half of a triangle of 2 m^2
   TreeMesh wrong = mesh;
-  wrong.leaf_cuts[0].mask = 1;
+  wrong.patches[0].mask = 1;
   EXPECT_THROW(finish(wrong, "wrong"), InvalidInput);
   wrong = mesh;
-  wrong.leaf_cuts[0].corners[1].x = std::nanf("");
+  wrong.patches[0].corners[1].x = std::nanf("");
   EXPECT_THROW(finish(wrong, "wrong"), InvalidInput);
   wrong = mesh;
-  wrong.leaf_cuts[0].corners = {glm::vec2(0.f), {1, 1}, {0.5f, 0.5f}};
+  wrong.patches[0].corners = {glm::vec2(0.f), {1, 1}, {0.5f, 0.5f}};
   EXPECT_THROW(finish(wrong, "wrong"), InvalidInput);
   wrong = mesh;
-  wrong.leaf_cuts.pop_back();
+  wrong.patch_of_triangle.pop_back();
   EXPECT_THROW(finish(wrong, "wrong"), InvalidInput);
 }
 
@@ -218,10 +220,10 @@ TEST_F(MaskedObj, ReadsTheMask) {
   EXPECT_EQ(tree.mesh.masks[0]->opaque, kQuarters.opaque);
   EXPECT_NE(tree.how.find("cut out by masks"), std::string::npos) << tree.how;
   EXPECT_NEAR(leafArea(tree.mesh), 0.5, 1e-12);
-  ASSERT_EQ(tree.mesh.leaf_cuts.size(), 2u);
+  ASSERT_EQ(tree.mesh.patches.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i)  // this square's coordinates are its corners
     for (std::size_t corner = 0; corner < 3; ++corner)
-      EXPECT_EQ(tree.mesh.leaf_cuts[i].corners[corner],
+      EXPECT_EQ(tree.mesh.patches[i].corners[corner],
                 glm::vec2(tree.mesh.vertices[tree.mesh.leaf_triangles[i][static_cast<int>(corner)]]));
   EXPECT_NEAR(leafArea(importTree(path, kMasked, reader(0.f)).mesh), 0.75, 1e-12);
 
@@ -247,6 +249,6 @@ TEST_F(MaskedObj, RefusesWhatItCannotCut) {
   const fs::path two = write(kFace + "usemtl leaf_ghost\nf 1 2 3\n", "newmtl leaf\nnewmtl leaf_ghost\nd 0.2\n");
   const ImportedTree tree = importTree(two);
   EXPECT_EQ(tree.mesh.leaf_triangles.size(), 2u);
-  EXPECT_TRUE(tree.mesh.leaf_cuts.empty());
+  EXPECT_TRUE(tree.mesh.masks.empty());
   EXPECT_NE(tree.how.find("left out 1 leaf triangles"), std::string::npos) << tree.how;
 }

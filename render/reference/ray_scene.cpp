@@ -28,10 +28,11 @@ void passCutLeaves(const RTCFilterFunctionNArguments* arguments) {
   const auto& cuts = *static_cast<const CutLeaves*>(arguments->geometryUserPtr);
   for (unsigned i = 0; i < arguments->N; ++i) {
     if (arguments->valid[i] == 0) continue;
-    const LeafCut& cut = cuts.of_triangle[RTCHitN_primID(arguments->hit, arguments->N, i)];
-    if (cut.mask == LeafCut::kWhole) continue;
+    const std::uint32_t number = cuts.patch_of_triangle[RTCHitN_primID(arguments->hit, arguments->N, i)];
+    if (number == TreeMesh::kNoPatch || cuts.patches[number].mask == LeafPatch::kNoMask) continue;
+    const LeafPatch& patch = cuts.patches[number];
     const float u = RTCHitN_u(arguments->hit, arguments->N, i), v = RTCHitN_v(arguments->hit, arguments->N, i);
-    if (!cuts.masks[cut.mask]->at(cut.corners, u, v)) arguments->valid[i] = 0;
+    if (!cuts.masks[patch.mask]->at(patch.corners, u, v)) arguments->valid[i] = 0;
   }
 }
 
@@ -148,7 +149,7 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
     EmbreeScene& scene = made.emplace_back(rtcNewScene(device.get()));
     Prototype& prototype = prototypes.emplace_back();
     const glm::vec3& pivot = placed.pivots[kind];
-    if (!mesh.leaf_cuts.empty()) prototype.cuts.reset(new CutLeaves{mesh.masks, mesh.leaf_cuts});
+    if (!mesh.masks.empty()) prototype.cuts.reset(new CutLeaves{mesh.masks, mesh.patches, mesh.patch_of_triangle});
     const auto attach = [&](unsigned number, const std::vector<glm::uvec3>& triangles, const Primitives& primitives) {
       attachPrimitives(device.get(), scene.get(), number, mesh.vertices, primitives, pivot,
                        number == kLeaves ? prototype.cuts.get() : nullptr);

@@ -57,7 +57,8 @@ struct Scenes {
 // What Embree's filter asks whether a leaf triangle is cut away where a ray meets it.
 struct CutLeaves {
   std::vector<std::shared_ptr<const LeafMask>> masks;
-  std::vector<LeafCut> of_triangle;
+  std::vector<LeafPatch> patches;
+  std::vector<std::uint32_t> patch_of_triangle;
 };
 
 // What a hit on a kind of tree is looked up in. A primitive is what Embree tests as one: a triangle, or two.
