@@ -168,11 +168,13 @@ class MapFit {
     absorption_ *= wider;
     scattering_ *= wider;
     bool near = std::abs(wider - 1.) < kNearEnough;
-    const TissueBands even = tissue.at(mean);
+    const TissueBands before = tissue.at(mean_thickness_), even = tissue.at(mean);
     for (std::size_t band = 0; band < kBands; ++band) {
       const double gamma = sums.gamma[band] / count, off = sums.transmittance[band] / count - mean_[band];
       near = near && std::abs(gamma - 1.) < kNearEnough && std::abs(off) < kNearEnough;
-      target_[band] = {.reflectance = even.reflectance[band] * gamma, .transmittance = even.transmittance[band] - off};
+      // By differences: tissueOf() and the table have not the same directions.
+      target_[band].reflectance += even.reflectance[band] * gamma - before.reflectance[band];
+      target_[band].transmittance += even.transmittance[band] - off - before.transmittance[band];
     }
     return near;
   }
