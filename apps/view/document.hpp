@@ -8,7 +8,9 @@
 
 namespace sunfleck::view {
 
-// What the viewer edits, and undoes as one.
+// What the viewer edits, and undoes as one. Of kinds whose leaves have textures it holds what was told of them: after
+// an edit there are no maps, and `leaf` is not their mean but `even`. The worker makes both (MadeLeaves), so that
+// hundreds of documents are kept in little room.
 struct Document {
   Scene scene;
   Model model = Model::sppg;

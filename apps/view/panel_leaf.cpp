@@ -102,6 +102,7 @@ void Panels::drawLeaf(Session& session) {
     edited |= drawNumbers(leaf, session);
   if (!std::holds_alternative<LeafByNumbers>(description))
     tellOptics(leaf, scene.bands, std::holds_alternative<LeafByContents>(description));
+  LeafTextures textures = scene.kinds[kind].textures;
   float gloss = leaf[0].gloss, roughness = leaf[0].gloss_roughness;
   edited |= changed(ImGui::SliderFloat("gloss", &gloss, 0.f, 1.f, "%.2f"), session);
   tip("Intensity of a glossy reflection on both sides; the shares above are then of the light it lets in");
@@ -111,10 +112,11 @@ void Panels::drawLeaf(Session& session) {
     band.gloss = gloss;
     band.gloss_roughness = roughness;
   }
+  edited |= drawLeafMaps(textures, scene.kinds[kind], session);
   heading("Wood");
   edited |= changed(ImGui::ColorEdit3("reflectance##wood", &wood.x, ImGuiColorEditFlags_Float), session);
   tip("Lambertian, per band, 0 to 1");
-  if (edited) session.attempt([&] { session.edit(SetOptics{kind, leaf, wood, description}, gesture); });
+  if (edited) session.attempt([&] { session.edit(SetOptics{kind, leaf, wood, description, textures}, gesture); });
 }
 
 // Leaves told in another way look as before where that is possible.

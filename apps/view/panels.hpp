@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/view/leaf_thumbnails.hpp"
 #include "apps/view/session.hpp"
 #include "leaves/leaf_description.hpp"
 #include "render/compare/picture_difference.hpp"
@@ -74,7 +75,12 @@ struct Panels {
   float latitude = 48.f, longitude = 9.f;
   std::string picture_file = "view.png", exr_file = "view.exr", scene_file = "view.toml", sky_file = "sky.hdr";
   bool chooses_image = false;  // as the sky, but has not read it yet
-  float sky_rotation = 0.f;    // [degrees]
+  std::array<std::string, kLeafImages.size()> leaf_files;
+  LeafTextures leaf_images_told;      // when these files were last told
+  bool chooses_lower_images = false;  // of leaves, but has none yet
+  bool asked_for_leaf_image = false;  // what goes wrong then is told beside it
+  LeafThumbnails thumbnails{uploadedThumbnail};
+  float sky_rotation = 0.f;  // [degrees]
 
   void show(Tab tab);
   // Draws all for a window of this size; gives the part of it that is left for the picture: corner and size [pixel].
@@ -95,6 +101,12 @@ struct Panels {
   bool drawNumbers(BandOptics& leaf, Session& session);
   bool drawContents(LeafByContents& leaf, Session& session);
   bool drawTissue(LeafByTissue& leaf, Session& session);
+  // What tells places and sides apart; whether numbers were edited.
+  bool drawLeafMaps(LeafTextures& textures, const TreeKind& of, Session& session);
+  void drawLeafImage(LeafImage image, const char* about, const LeafTextures& textures, Session& session);
+  bool drawLowerSide(LeafTextures& textures, const BandOptics& told, Session& session);
+  bool drawUnderside(LeafUnderside& underside, const BandOptics& told, Session& session);
+  void drawMadeMaps(const Session& session);
   void drawModel(Session& session);
   void drawCompare(Session& session, const FrameReport& report);
   void drawProbe(Session& session, const FrameReport& report);

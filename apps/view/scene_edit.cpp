@@ -31,6 +31,18 @@ void requirePlace(const glm::vec3& position) {
     require(std::abs(position[axis]) <= kFarthest, "place of the tree", position[axis], "in [-1e6, 1e6] m");
 }
 
+// What the kind's leaves are told to be. Maps that no longer hold are for the worker to make.
+void tell(TreeKind& kind, const LightBands& bands, const BandOptics& leaf, const LeafDescription& description,
+          const LeafTextures& textures) {
+  validate(textures, "leaf");
+  const BandOptics even = bandOptics(description, bands, leaf);
+  if (kind.maps && kind.even == even && kind.description == description && kind.textures == textures) return;
+  kind.even = kind.leaf = even;
+  kind.description = description;
+  kind.textures = textures;
+  kind.maps = nullptr;
+}
+
 struct Apply {
   Document& document;
 
@@ -70,12 +82,18 @@ struct Apply {
     require(edit.kind < document.scene.kinds.size(), "kind", edit.kind + 1, "one of the scene's kinds");
     for (const LeafOptics& leaf : edit.leaf) validate(leaf);
     requireShares(edit.wood_reflectance, "reflectance of wood");
-    TreeKind kind = document.scene.kinds[edit.kind];
-    kind.description = edit.description;
-    if (edit.textures) kind.textures = *edit.textures;
+    TreeKind& kind = document.scene.kinds[edit.kind];
+    tell(kind, document.scene.bands, edit.leaf, edit.description, edit.textures.value_or(kind.textures));
     kind.wood_reflectance = edit.wood_reflectance;
-    setLeaves(kind, document.scene.bands, edit.leaf);
-    document.scene.kinds[edit.kind] = std::move(kind);
+  }
+  void operator()(const SetLeafImage& edit) const {
+    require(edit.kind < document.scene.kinds.size(), "kind", edit.kind + 1, "one of the scene's kinds");
+    TreeKind& kind = document.scene.kinds[edit.kind];
+    LeafTextures textures = kind.textures;
+    imageOf(textures, edit.image) = edit.texture;
+    if (textures.lower.any()) textures.underside = {};
+    const BandOptics told = kind.told();
+    tell(kind, document.scene.bands, told, kind.description, textures);
   }
   void operator()(const SetModel& edit) const { document.model = edit.model; }
   void operator()(const SetEffort& edit) const {
@@ -123,7 +141,8 @@ struct Apply {
     const auto taken = [&](const std::string& name) {
       return std::ranges::any_of(document.scene.kinds, [&](const TreeKind& other) { return other.name == name; });
     };
-    setLeaves(kind, document.scene.bands, kind.told());
+    const BandOptics told = kind.told();
+    tell(kind, document.scene.bands, told, kind.description, kind.textures);
     for (int number = 2; taken(kind.name); ++number) kind.name = edit.kind.name + " " + std::to_string(number);
     document.scene.kinds.push_back(std::move(kind));
     document.scene.stand.trees.push_back(
@@ -152,6 +171,7 @@ struct Name {
   const char* operator()(const SetSky&) const { return "sky"; }
   const char* operator()(const SetGround&) const { return "ground"; }
   const char* operator()(const SetOptics&) const { return "leaf and wood"; }
+  const char* operator()(const SetLeafImage&) const { return "image of leaves"; }
   const char* operator()(const SetModel&) const { return "model"; }
   const char* operator()(const SetEffort&) const { return "quality"; }
   const char* operator()(const MoveTree&) const { return "move tree"; }
@@ -166,6 +186,25 @@ struct Name {
 };
 
 }  // namespace
+
+std::shared_ptr<const LeafTexture>& imageOf(LeafTextures& textures, LeafImage image) {
+  switch (image) {
+    case LeafImage::upper:
+      return textures.upper.detail;
+    case LeafImage::upper_gloss:
+      return textures.upper.gloss;
+    case LeafImage::lower:
+      return textures.lower.detail;
+    case LeafImage::lower_gloss:
+      break;
+  }
+  return textures.lower.gloss;
+}
+
+std::string nameOf(LeafImage image) {
+  static constexpr std::array kNames{"upper", "upper_gloss", "lower", "lower_gloss"};
+  return kNames[static_cast<std::size_t>(image)];
+}
 
 std::string nameOf(const SceneEdit& edit) {
   return std::visit(Name{}, edit);

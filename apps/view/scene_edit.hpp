@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -26,6 +28,17 @@ struct SetOptics {
   glm::vec3 wood_reflectance;                 // [1], 0 .. 1
   LeafDescription description = {};           // how the leaves are told
   std::optional<LeafTextures> textures = {};  // none: those of the kind stay
+};
+// One of the images of a kind's leaves.
+enum class LeafImage { upper, upper_gloss, lower, lower_gloss };
+std::shared_ptr<const LeafTexture>& imageOf(LeafTextures& textures, LeafImage image);
+inline constexpr std::array kLeafImages{LeafImage::upper, LeafImage::upper_gloss, LeafImage::lower,
+                                        LeafImage::lower_gloss};
+std::string nameOf(LeafImage image);  // as scene files call it
+struct SetLeafImage {
+  std::size_t kind;
+  LeafImage image;
+  std::shared_ptr<const LeafTexture> texture;  // none: it has none. A lower one takes the place of numbers
 };
 struct SetModel {
   Model model;
@@ -57,8 +70,8 @@ struct SaveCamera {
 struct ForgetCamera {
   std::string name;
 };
-using SceneEdit = std::variant<SetSuns, SetSky, SetGround, SetOptics, SetModel, SetEffort, MoveTree, TurnTree, AddTrees,
-                               RemoveTrees, AddKind, SaveCamera, ForgetCamera>;
+using SceneEdit = std::variant<SetSuns, SetSky, SetGround, SetOptics, SetLeafImage, SetModel, SetEffort, MoveTree,
+                               TurnTree, AddTrees, RemoveTrees, AddKind, SaveCamera, ForgetCamera>;
 
 // What was done, for people: "move tree".
 std::string nameOf(const SceneEdit& edit);

@@ -10,6 +10,7 @@
 
 #include "core/random.hpp"
 #include "core/require.hpp"
+#include "render/leaf_texture_file.hpp"
 #include "render/scene_file.hpp"
 #include "render/stand_field.hpp"
 #include "sky/solar_position.hpp"
@@ -256,6 +257,13 @@ void Session::setSkyImage(const std::string& file, float rotation) {
   });
 }
 
+void Session::setLeafImage(std::size_t kind, LeafImage image, const std::string& file) {
+  const bool gloss = image == LeafImage::upper_gloss || image == LeafImage::lower_gloss;
+  prepare("reading " + file, [=] {
+    return SetLeafImage{kind, image, readLeafTexture(file, gloss ? 1.f : kMostLeafAlbedo)};
+  });
+}
+
 std::uint32_t Session::selectedKind() const {
   return document().selected ? document().scene.stand.trees[*document().selected].kind : 0;
 }
@@ -299,6 +307,7 @@ void Session::goTo(const std::string& saved_camera) {
 void Session::release(const StandWorker::Result& shown) {
   const StandWish& made = shown.made;
   shown_ = made.revision;
+  shown_scene_ = std::make_shared<const Scene>(made.scene);
   shown_needs_ = {.exact = made.exact, .field = made.needs.field};
   answered_needs_ = {.exact = made.exact, .field = made.needs.field && !made.needs.preview};
   field_text_ = made.needs.field ? textOf(*shown.geometry->field()) : "";

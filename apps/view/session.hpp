@@ -87,6 +87,8 @@ class Session {
   // Reads a panorama in the background, and makes it the sky. Its brightness stays where it was one before.
   //   rotation  azimuth of its middle column [rad]
   void setSkyImage(const std::string& file, float rotation);
+  // Reads an image of a kind's leaves in the background.
+  void setLeafImage(std::size_t kind, LeafImage image, const std::string& file);
   std::uint32_t selectedKind() const;  // of the selected tree, or the first
   float groundHeight() const;          // [m]
 
@@ -100,6 +102,8 @@ class Session {
   // The geometry that waits to be drawn, if there is one. Release it when it has been.
   std::optional<StandWorker::Result> take() { return worker_.take(); }
   void release(const StandWorker::Result& shown);
+  // The scene of the last result, with what follows from its leaves' textures; none before the first.
+  const std::shared_ptr<const Scene>& shownScene() const { return shown_scene_; }
   // Whether what is drawn is as old as the document.
   bool upToDate() const;
   // Whether a model can be drawn without waiting for what it needs.
@@ -148,6 +152,7 @@ class Session {
   std::vector<std::shared_ptr<std::optional<SceneEdit>>> prepared_;  // by the worker
   std::uint64_t wished_ = 0, shown_ = 0;                             // stands of the history, one more than its numbers
   ModelNeeds wished_needs_, answered_needs_, shown_needs_;           // answered: made, failed or cancelled
+  std::shared_ptr<const Scene> shown_scene_;
   std::vector<Writing> writings_;
   std::uint64_t gesture_ = 0, strokes_ = 0;
   std::vector<ProductCost> last_costs_, recomputed_;

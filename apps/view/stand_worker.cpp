@@ -157,6 +157,7 @@ void StandWorker::makeLevels(const Progress& progress) {
 
 void StandWorker::make(StandWish wish) {
   const auto start = Clock::now();
+  leaves_.make(wish.scene.kinds, wish.scene.bands);
   const bool from_nothing = !geometry_ || geometry_->effort() != wish.effort;
   if (from_nothing) geometry_ = std::make_unique<StandGeometry>(wish.effort);
   const auto progress = [this](double done) { return tell(done); };
@@ -180,6 +181,7 @@ void StandWorker::make(StandWish wish) {
                 .costs = geometry_->lastCosts(),
                 .seconds = seconds,
                 .from_nothing = from_nothing};
+  result.costs.push_back(leaves_.lastCost());
   for (const MeshLevels& of_kind : levels_) result.levels.push_back(of_kind.levels);
   const std::lock_guard lock(mutex_);
   if (result.made.needs.preview && !wish_) {

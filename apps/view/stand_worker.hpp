@@ -12,6 +12,7 @@
 
 #include "apps/view/document.hpp"
 #include "apps/view/exact_tables.hpp"
+#include "apps/view/made_leaves.hpp"
 #include "render/gl/tree_levels.hpp"
 
 namespace sunfleck::view {
@@ -33,11 +34,11 @@ class StandWorker {
  public:
   // What the geometry holds now. Until release() it stays as it is, and its receiver alone reads it.
   struct Result {
-    StandWish made;
+    StandWish made;  // with what follows from its leaves' textures
     const StandGeometry* geometry = nullptr;
     std::vector<std::shared_ptr<const gl::TreeLevels>> levels;  // of each of the geometry's kinds that stands
     std::vector<ProductCost> costs;                             // of this update alone
-    double seconds = 0.;                                        // wall time of the geometry
+    double seconds = 0.;                                        // wall time of leaf maps and geometry
     bool from_nothing = false;                                  // it held nothing before
   };
 
@@ -97,6 +98,7 @@ class StandWorker {
     std::shared_ptr<const gl::TreeLevels> levels;
   };
   std::vector<MeshLevels> levels_;  // of each of the geometry's kinds
+  MadeLeaves leaves_;
   ExactTables tables_;
   std::thread thread_;
 };

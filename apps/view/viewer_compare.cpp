@@ -44,8 +44,8 @@ void Viewer::endStaleReference() {
 
 std::optional<Shown> Viewer::referenceShown() {
   if (!reference_key_) {
-    if (!still() || drag_ != Drag::none) return std::nullopt;
-    Scene scene = session_.document().scene;
+    if (!still() || drag_ != Drag::none || !session_.shownScene()) return std::nullopt;
+    Scene scene = *session_.shownScene();
     scene.camera = session_.camera;
     reference_key_ = referenceKey();
     tracing_.start(scene, reference_key_->target);

@@ -152,6 +152,16 @@ void Viewer::executeEdit(const ScriptStep& step) {
   const auto setLeaf = [&](const LeafDescription& told) {
     session_.edit(SetOptics{kind, leaf, scene.kinds[kind].wood_reflectance, told});
   };
+  LeafTextures textures = scene.kinds[kind].textures;
+  const auto setTextures = [&] {
+    const TreeKind& of = scene.kinds[kind];
+    session_.edit(SetOptics{kind, leaf, of.wood_reflectance, of.description, textures});
+  };
+  const auto per_band = [&] {
+    return glm::vec3(number(step, 0), number(step, 1, number(step, 0)),
+                     number(step, 2, number(step, 1, number(step, 0))));
+  };
+  const auto image = [&] { return named(step.texts[0], kLeafImages, "image", [](LeafImage i) { return nameOf(i); }); };
   const auto named_band = [&](std::size_t band) {
     return step.texts[0] == "all" || step.texts[0] == std::array{"red", "green", "blue"}[band];
   };
@@ -180,8 +190,7 @@ void Viewer::executeEdit(const ScriptStep& step) {
     case Verb::sky_image:
       return session_.setSkyImage(step.texts[0], step.numbers.empty() ? 0.f : radians(step.numbers[0]));
     case Verb::ground:
-      return session_.edit(SetGround{
-          {number(step, 0), number(step, 1, number(step, 0)), number(step, 2, number(step, 1, number(step, 0)))}});
+      return session_.edit(SetGround{per_band()});
     case Verb::leaf_albedo:
       for (LeafOptics& band : leaf) band.reflectance = band.transmittance = 0.5f * number(step, 0);
       return setLeaf(LeafByNumbers{});
@@ -204,6 +213,34 @@ void Viewer::executeEdit(const ScriptStep& step) {
       told.thickness = step.numbers[2];
       return setLeaf(told);
     }
+    case Verb::leaf_maps_off:
+      if (step.texts[0] != "all") return session_.edit(SetLeafImage{kind, image(), nullptr});
+      textures = {};
+      return setTextures();
+    case Verb::leaf_maps_albedo:
+      textures.albedo = per_band();
+      return setTextures();
+    case Verb::leaf_maps_relief:
+      textures.relief = step.numbers[0];
+      return setTextures();
+    case Verb::leaf_maps:
+      return session_.setLeafImage(kind, image(), step.texts[1]);
+    case Verb::leaf_lower_same:
+      textures.lower = {};
+      textures.underside = {};
+      return setTextures();
+    case Verb::leaf_lower_reflectance:
+      textures.lower = {};
+      textures.underside.reflectance = per_band();
+      return setTextures();
+    case Verb::leaf_lower_gloss:
+      textures.lower = {};
+      textures.underside.gloss = per_band();
+      return setTextures();
+    case Verb::leaf_lower_roughness:
+      textures.lower = {};
+      textures.underside.gloss_roughness = number(step, 0);
+      return setTextures();
     case Verb::leaf:
       for (std::size_t band = 0; band < kBands; ++band)
         if (named_band(band)) {
