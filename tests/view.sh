@@ -289,6 +289,76 @@ for file in changed slab; do
   cmp -s $file.png opened.png || fail "the saved scene $file.toml looks different"
 done
 
+# Images of leaves and a lower side: other pictures each by the mean of the maps, made in the background, and nothing else
+# made anew; undone; wrong files change nothing. The scene that is saved shows the same.
+awk 'BEGIN { print "P3 6 4 255"; for (i = 0; i < 24; i++) { v = 10 * i; print v, 255 - v, v } }' >upper.ppm
+awk 'BEGIN { print "P3 6 4 255"; for (i = 0; i < 24; i++) print 200, 200, 200 }' >gloss.ppm
+awk 'BEGIN { print "P3 5 4 255"; for (i = 0; i < 20; i++) print 200, 200, 200 }' >narrow.ppm
+cat >maps.txt <<'END'
+panels off
+samples 2
+resize 80 60
+leaf slab all 0.5 10 0.2
+wait ready
+screenshot even.png
+expect recomputed leaf_maps 0
+leaf maps upper upper.ppm
+wait ready
+screenshot upper.png
+expect recomputed leaf_maps 1
+leaf maps upper_gloss gloss.ppm
+wait ready
+screenshot shiny.png
+expect recomputed leaf_maps 1
+leaf maps albedo 0.5 0.8 1
+leaf slab all 0.5 10 0.4
+wait ready
+screenshot thick.png
+expect recomputed light_maps 0
+leaf lower reflectance 0.1 0.3 0.2
+leaf lower gloss 0
+leaf lower roughness 0.5
+leaf maps relief 0.05
+wait ready
+screenshot lower.png
+expect recomputed cells 0
+sun 40 20
+wait ready
+expect recomputed leaf_maps 0
+undo
+wait ready
+screenshot again.png
+expect same lower.png again.png
+save maps.toml
+undo 4
+wait ready
+screenshot again.png
+expect same thick.png again.png
+undo 2
+wait ready
+screenshot again.png
+expect same shiny.png again.png
+leaf maps lower upper.ppm
+leaf maps off upper_gloss
+leaf lower same
+wait ready
+screenshot again.png
+expect same upper.png again.png
+leaf maps off all
+wait ready
+screenshot again.png
+expect same even.png again.png
+END
+runs maps.txt trees.toml
+for pair in "even upper" "upper shiny" "shiny thick" "thick lower"; do
+  set -- $pair
+  cmp -s "$1.png" "$2.png" && fail "$1.png and $2.png are the same"
+done
+grep -q '^leaf_maps = .*upper.ppm' maps.toml && grep -q '^leaf_lower = ' maps.toml || fail "maps.toml: $(grep leaf_ maps.toml)"
+printf 'panels off\nsamples 2\nresize 80 60\nwait ready\nscreenshot opened.png\n' >open.txt
+runs open.txt maps.toml
+cmp -s lower.png opened.png || fail "the saved scene maps.toml looks different"
+
 # The script that the documentation shows.
 awk '/^    # turn the sun/ { shows = 1 } shows && !/^    / { exit } shows' \
   "$tests/../docs/VIEWER.md" | sed 's/^    //; s/^samples 16/panels off\nresize 90 60\nsamples 2/; s/0\.05 /0.5 /' >shown.txt
@@ -357,6 +427,9 @@ stops 2 'wrong.txt:1: model = "none": must be one of ss' 'model none\n'
 stops 2 'wrong.txt:1: x.gif' 'screenshot x.gif\n'
 stops 2 'wrong.txt:1: leaf species = "oak": must be one of' 'leaf species oak\n'
 stops 2 'wrong.txt:1: leaf prospect: sugar: must be one of' 'leaf prospect sugar 1\n'
+stops 2 'wrong.txt:1: no.png' 'leaf maps upper no.png\n'
+stops 2 'wrong.txt:1: trees.toml' 'leaf maps upper trees.toml\n'
+stops 2 'wrong.txt:2: leaf: upper.ppm has 6 x 4 pixels' 'leaf maps upper upper.ppm\nleaf maps lower_gloss narrow.ppm\n'
 stops 2 'wrong.txt:1: no tree is selected' 'move 1 1\n'
 stops 2 'wrong.txt:2: camera "x"' '\ncamera load x\n'
 stops 2 'wrong.txt:1: directions' 'directions 3\n'

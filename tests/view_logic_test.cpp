@@ -7,6 +7,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "apps/view/edit_history.hpp"
+#include "apps/view/leaf_thumbnails.hpp"
+#include "apps/view/made_leaves.hpp"
 #include "apps/view/navigation.hpp"
 #include "apps/view/view_script.hpp"
 #include "core/random.hpp"
@@ -33,7 +35,8 @@ bool same(const Document& a, const Document& b) {
   bool kinds = a.scene.kinds.size() == b.scene.kinds.size();
   for (std::size_t i = 0; kinds && i < a.scene.kinds.size(); ++i)
     kinds = a.scene.kinds[i].name == b.scene.kinds[i].name && a.scene.kinds[i].mesh == b.scene.kinds[i].mesh &&
-            same(a.scene.kinds[i].leaf, b.scene.kinds[i].leaf);
+            same(a.scene.kinds[i].told(), b.scene.kinds[i].told()) &&
+            a.scene.kinds[i].textures == b.scene.kinds[i].textures;
   return kinds && a.scene.saved_cameras == b.scene.saved_cameras && a.scene.stand == b.scene.stand &&
          a.scene.sky == b.scene.sky && a.scene.ground_albedo == b.scene.ground_albedo &&
          a.scene.sun().zenith == b.scene.sun().zenith && a.model == b.model && a.effort.cells == b.effort.cells &&
@@ -46,11 +49,23 @@ SceneEdit optics(std::size_t kind, const glm::vec3& wood, const BandOptics& leaf
   return edit;
 }
 
+// Colours and alphas that rise from place to place, up to 1.
+std::shared_ptr<const LeafTexture> risingTexture(int width, int height) {
+  LeafTexture texture{.file = "rising.png", .width = width, .height = height, .colour = {}, .alpha = {}};
+  const int places = width * height;
+  for (int i = 1; i <= places; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(places);
+    texture.colour.emplace_back(share, 0.5f * share, 1.f);
+    texture.alpha.push_back(share);
+  }
+  return std::make_shared<const LeafTexture>(std::move(texture));
+}
+
 SceneEdit randomEdit(const Document& document, Random& random) {
   const auto place = [&] { return glm::vec3(20.f * random.uniform(), 20.f * random.uniform(), 0.f); };
   const std::size_t trees = document.scene.stand.trees.size();
   const auto tree = static_cast<std::size_t>(random.uniform() * static_cast<float>(trees));
-  switch (static_cast<int>(10.f * random.uniform())) {
+  switch (static_cast<int>(12.f * random.uniform())) {
     case 0:
       return SetSuns{{Sun{.zenith = random.uniform()}}};
     case 1:
@@ -72,6 +87,14 @@ SceneEdit randomEdit(const Document& document, Random& random) {
     case 8:
       if (trees > 0) return TurnTree{tree, random.uniform()};
       [[fallthrough]];
+    case 9:
+      return SetLeafImage{0, random.uniform() < 0.5f ? LeafImage::upper : LeafImage::lower_gloss,
+                          random.uniform() < 0.7f ? risingTexture(3, 2) : nullptr};
+    case 10:
+      return SetOptics{.kind = 0,
+                       .leaf = {},
+                       .wood_reflectance = glm::vec3(0.3f),
+                       .textures = LeafTextures{.underside = {.gloss = glm::vec3(random.uniform())}}};
     default:
       return AddTrees{{Placement{.position = place()}, Placement{.position = place()}}};
   }
@@ -154,6 +177,17 @@ TEST(EditHistory, ChangesNothingByAWrongEdit) {
       SetEffort{{.sample_directions = 3}},
       SetEffort{{.light_resolution = 0}},
       SetEffort{{.cells = 65}},
+      SetLeafImage{1, LeafImage::upper, nullptr},
+      SetOptics{.kind = 0, .leaf = {}, .wood_reflectance = {}, .textures = LeafTextures{.relief = -1.}},
+      SetOptics{.kind = 0, .leaf = {}, .wood_reflectance = {}, .textures = LeafTextures{.albedo = glm::vec3(nan)}},
+      SetOptics{.kind = 0,
+                .leaf = {},
+                .wood_reflectance = {},
+                .textures = LeafTextures{.underside = {.reflectance = glm::vec3(1.5f)}}},
+      SetOptics{.kind = 0,
+                .leaf = {},
+                .wood_reflectance = {},
+                .textures = LeafTextures{.upper = {.detail = risingTexture(2, 2), .gloss = risingTexture(2, 3)}}},
       MoveTree{1, glm::vec3(0.f)},
       MoveTree{0, glm::vec3(nan)},
       MoveTree{0, glm::vec3(2e6f)},
@@ -188,6 +222,105 @@ TEST(EditHistory, GivesNewKindsNamesOfTheirOwn) {
   EXPECT_EQ(history.now().scene.kinds[1].name, "random 2");
   EXPECT_EQ(history.now().scene.kinds[2].name, "random 3");
   EXPECT_EQ(history.now().selected, 2u);
+}
+
+// Numbers of the lower side give way to its images, as they cannot stand beside them.
+TEST(SceneEdit, PutsLowerImagesInThePlaceOfNumbers) {
+  Document document = smallDocument();
+  document.scene.kinds[0].textures.underside.gloss = glm::vec3(0.5f);
+  document = edited(document, SetLeafImage{0, LeafImage::upper, risingTexture(3, 2)});
+  EXPECT_TRUE(document.scene.kinds[0].textures.underside.any());
+  document = edited(document, SetLeafImage{0, LeafImage::lower, risingTexture(3, 2)});
+  EXPECT_FALSE(document.scene.kinds[0].textures.underside.any());
+  try {
+    edited(document, SetLeafImage{0, LeafImage::upper_gloss, risingTexture(4, 4)});
+    FAIL();
+  } catch (const InvalidInput& e) {
+    EXPECT_STREQ(e.what(), "leaf: rising.png has 3 x 2 pixels and rising.png has 4 x 4: must be of one size");
+  }
+  for (const LeafImage image : {LeafImage::upper, LeafImage::lower})
+    document = edited(document, SetLeafImage{0, image, nullptr});
+  EXPECT_FALSE(document.scene.kinds[0].textures.any());
+}
+
+TEST(MadeLeaves, MakesWhatIsToldOtherwiseAlone) {
+  const Document document = edited(smallDocument(), SetLeafImage{0, LeafImage::upper, risingTexture(30, 20)});
+  std::vector<TreeKind> kinds{document.scene.kinds[0], smallDocument().scene.kinds[0]};
+  EXPECT_EQ(kinds[0].maps, nullptr);
+  MadeLeaves leaves;
+  leaves.make(kinds, {});
+  EXPECT_EQ(leaves.lastCost().made, 1u);  // the other has no textures
+  EXPECT_EQ(kinds[1].maps, nullptr);
+  TreeKind expected = document.scene.kinds[0];
+  setLeaves(expected, {}, expected.told());
+  ASSERT_NE(kinds[0].maps, nullptr);
+  EXPECT_EQ(*kinds[0].maps, *expected.maps);
+  EXPECT_EQ(kinds[0].leaf, expected.leaf);
+  EXPECT_NE(kinds[0].leaf, kinds[0].even);
+  // The same again, of which the document holds no maps.
+  std::vector<TreeKind> again{document.scene.kinds[0]};
+  leaves.make(again, {});
+  EXPECT_EQ(leaves.lastCost().made, 0u);
+  EXPECT_EQ(leaves.lastCost().reused, 1u);
+  EXPECT_EQ(again[0].maps, kinds[0].maps);
+  EXPECT_EQ(again[0].leaf, kinds[0].leaf);
+  // Another factor: other maps on the same shares of leaf area.
+  std::vector<TreeKind> dark{document.scene.kinds[0]};
+  dark[0].textures.albedo = glm::vec3(0.5f);
+  leaves.make(dark, {});
+  EXPECT_EQ(leaves.lastCost().made, 1u);
+  EXPECT_EQ(dark[0].shares, kinds[0].shares);
+  EXPECT_LT(dark[0].leaf[0].reflectance, kinds[0].leaf[0].reflectance);
+}
+
+TEST(LeafThumbnails, ShowMeansOfPlaces) {
+  const auto texture = risingTexture(4, 2);
+  const Thumbnail whole = thumbnailOf(*texture, LeafImagePart::alpha, 8);
+  EXPECT_EQ(whole.width, 4);
+  EXPECT_EQ(whole.height, 2);
+  EXPECT_EQ(whole.colours[0], glm::u8vec4(32, 32, 32, 255));  // 255 / 8, rounded
+  EXPECT_EQ(whole.colours[7], glm::u8vec4(255));
+  const Thumbnail small = thumbnailOf(*texture, LeafImagePart::alpha, 2);
+  EXPECT_EQ(small.width, 2);
+  EXPECT_EQ(small.height, 1);
+  EXPECT_EQ(small.colours[0], glm::u8vec4(112, 112, 112, 255));  // 255 (1 + 2 + 5 + 6) / 32, rounded
+  const Thumbnail colour = thumbnailOf(*texture, LeafImagePart::colour, 8);
+  EXPECT_EQ(colour.colours[7], glm::u8vec4(255, 188, 255, 255));  // a light of 0.5 in sRGB
+  const Thumbnail narrow = thumbnailOf(*risingTexture(1, 50), LeafImagePart::colour, 10);
+  EXPECT_EQ(narrow.width, 1);
+  EXPECT_EQ(narrow.height, 10);
+  LeafMaps maps{.places = {{.transmittance = glm::vec3(1.f)}}};
+  maps.places[0].faces[1].reflectance = {1.f, 0.f, 2.f};
+  EXPECT_EQ(thumbnailOf(maps, LeafMapPart::transmittance, 8).colours[0], glm::u8vec4(255));
+  EXPECT_EQ(thumbnailOf(maps, LeafMapPart::upper_reflectance, 8).colours[0], glm::u8vec4(0, 0, 0, 255));
+  EXPECT_EQ(thumbnailOf(maps, LeafMapPart::lower_reflectance, 8).colours[0], glm::u8vec4(255, 0, 255, 255));
+}
+
+// Frames ask for them again and again.
+TEST(LeafThumbnails, AreMadeOnceAnImage) {
+  int there = 0;
+  LeafThumbnails thumbnails([&](const Thumbnail& thumbnail) {
+    ++there;
+    return std::shared_ptr<const LeafThumbnails::Uploaded>(
+        new LeafThumbnails::Uploaded{.name = 1, .width = thumbnail.width, .height = thumbnail.height},
+        [&there](const LeafThumbnails::Uploaded* gone) {
+          --there;
+          delete gone;
+        });
+  });
+  auto texture = risingTexture(4, 2);
+  const auto maps = std::make_shared<const LeafMaps>(LeafMaps{.places = {LeafPlace{}}});
+  for (int frame = 0; frame < 5; ++frame) {
+    thumbnails.of(texture, LeafImagePart::colour);
+    EXPECT_EQ(thumbnails.of(texture, LeafImagePart::alpha).width, 4);
+    EXPECT_EQ(thumbnails.of(maps, LeafMapPart::transmittance).width, 1);
+  }
+  EXPECT_EQ(thumbnails.made(), 3u);
+  EXPECT_EQ(there, 3);
+  texture = risingTexture(4, 2);  // another image
+  thumbnails.of(texture, LeafImagePart::colour);
+  EXPECT_EQ(thumbnails.made(), 4u);
+  EXPECT_EQ(there, 2);  // those of the former image are gone
 }
 
 constexpr Camera kCamera{.target = {1.f, 2.f, 3.f},
@@ -307,6 +440,9 @@ TEST(ViewScript, TellsWhatIsWrongWhere) {
   EXPECT_EQ(refusal("frobnicate"), "x.txt:1: \"frobnicate\": must be a command; see: sunfleck view --help");
   EXPECT_EQ(refusal("wait long"), "x.txt:1: wait \"long\": must be one of ready, preview, reference");
   EXPECT_EQ(refusal("wait"), "x.txt:1: wait without a word: must be one of ready, preview, reference");
+  EXPECT_EQ(refusal("leaf maps side x.png"),
+            "x.txt:1: leaf maps IMAGE = \"side\": must be one of upper, upper_gloss, lower, lower_gloss");
+  EXPECT_EQ(refusal("leaf lower roughness 0"), "x.txt:1: leaf lower roughness ROUGHNESS = \"0\": must be in [0.05, 1]");
   EXPECT_EQ(refusal("save \"half"), "x.txt:1: \"\"half\": must end with a quote");
   EXPECT_EQ(refusal("save \"\""), "x.txt:1: save FILE = \"\": must be 1 to 4096 characters");
 }

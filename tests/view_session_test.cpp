@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <future>
 #include <glm/geometric.hpp>
 #include <thread>
+#include <tuple>
 
 #include "apps/view/session.hpp"
 #include "core/require.hpp"
 #include "leaves/prospect.hpp"
 #include "render/compare/exact_powers.hpp"
+#include "render/leaf_texture_file.hpp"
 #include "render/stand_field.hpp"
 #include "tests/random_leaves.hpp"
 
@@ -271,6 +274,130 @@ TEST(Session, TellsLeavesByWhatTheyAre) {
   session.edit(AddKind{other, {9.f, 0.f, 0.f}});
   EXPECT_EQ(session.document().scene.kinds[1].leaf, of_beech);
   ASSERT_TRUE(settle(session));
+}
+
+// 8 x 6 places, the right half of twice the colour and thickness of the left.
+std::shared_ptr<const LeafTexture> halves(float left) {
+  LeafTexture texture{.file = {}, .width = 8, .height = 6, .colour = {}, .alpha = {}};
+  for (int i = 0; i < 48; ++i) {
+    const float share = i % 8 < 4 ? left : 2.f * left;
+    texture.colour.emplace_back(share);
+    texture.alpha.push_back(share);
+  }
+  return std::make_shared<const LeafTexture>(std::move(texture));
+}
+
+// Check that maps and their mean follow what the leaves are told to be, at the last wish; that undo brings them back;
+// and that nothing else is computed anew, nor they by what does not touch them.
+TEST(Session, MakesMapsOfLeavesInTheBackground) {
+  Session session("small", [] { return smallDocument(); });
+  ASSERT_TRUE(settle(session));
+  recomputed(session);
+  BandOptics glossy;
+  for (LeafOptics& band : glossy) band.gloss = 0.2f;
+  LeafByTissue tissue{.absorption = {1.5f, 0.4f, 5.f}, .scattering = glm::vec3(10.f), .thickness = 0.2};
+  const LeafTextures textures{.upper = {.detail = halves(0.4f), .gloss = nullptr},
+                              .underside = {.gloss = glm::vec3(0.f)}};
+  const auto tell = [&](std::uint64_t gesture = 0) {
+    session.edit(SetOptics{0, glossy, glm::vec3(0.3f), tissue, textures}, gesture);
+  };
+  const auto shown = [&]() -> const TreeKind& { return session.shownScene()->kinds[0]; };
+  // Counts of the leaf maps, where nothing else may have been made.
+  const auto maps_made = [&] {
+    std::size_t maps = 0;
+    for (const ProductCost& cost : session.recomputed())
+      if (cost.name == "leaf maps") maps = cost.made;
+    EXPECT_EQ(recomputed(session), maps);
+    return maps;
+  };
+  tell();
+  ASSERT_TRUE(settle(session));
+  EXPECT_EQ(maps_made(), 1u);
+  const auto as_told = [&] {
+    const BandOptics even = bandOptics(LeafDescription(tissue), {}, glossy);
+    const auto maps = leafMaps(tissue, even, textures);
+    ASSERT_NE(shown().maps, nullptr);
+    EXPECT_EQ(*shown().maps, *maps);
+    EXPECT_EQ(shown().leaf, meanOptics(*maps, shown().shares->at));
+    EXPECT_EQ(shown().told(), even);
+  };
+  as_told();
+  const auto first = *shown().maps;
+  const BandOptics first_mean = shown().leaf;
+  const auto shares = shown().shares;
+  for (const double thickness : {0.25, 0.3, 0.4}) {
+    tissue.thickness = thickness;
+    tell(5);
+    session.advance();
+  }
+  ASSERT_TRUE(settle(session));
+  EXPECT_GE(maps_made(), 1u);  // of wishes that came before the last, as many as there was time for
+  as_told();
+  EXPECT_NE(shown().leaf, first_mean);
+  EXPECT_EQ(shown().shares, shares);
+  // What does not tell of the leaves.
+  const auto thick = shown().maps;
+  session.edit(SetOptics{0, glossy, glm::vec3(0.5f), tissue});
+  session.edit(SetSuns{{Sun{.zenith = 0.7f}}});
+  ASSERT_TRUE(settle(session));
+  EXPECT_EQ(shown().maps, thick);
+  recomputed(session);
+  session.undo();
+  session.undo();
+  ASSERT_TRUE(settle(session));
+  EXPECT_EQ(shown().maps, thick);
+  session.undo();
+  ASSERT_TRUE(settle(session));
+  ASSERT_NE(shown().maps, nullptr);
+  EXPECT_EQ(*shown().maps, first);
+  EXPECT_EQ(shown().leaf, first_mean);
+  session.undo();
+  ASSERT_TRUE(settle(session));
+  EXPECT_EQ(shown().maps, nullptr);
+  session.redo();
+  ASSERT_TRUE(settle(session));
+  EXPECT_EQ(*shown().maps, first);
+}
+
+// Check that images are read in the background, that one that cannot be changes nothing and is told in one line, and
+// that the scene that is saved has them.
+TEST(Session, ReadsImagesOfLeaves) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "sunfleck_view_session_test";
+  std::filesystem::create_directories(folder);
+  const std::string file = (folder / "halves.exr").string(), other = (folder / "other.exr").string();
+  writeLeafTexture(file, *halves(0.5f));
+  LeafTexture one{.file = {}, .width = 1, .height = 1, .colour = {glm::vec3(2.f)}, .alpha = {}};
+  writeLeafTexture(other, one);
+  Session session("small", [] { return smallDocument(); });
+  ASSERT_TRUE(settle(session));
+  session.setLeafImage(0, LeafImage::upper, file);
+  ASSERT_TRUE(settle(session));
+  const auto textures = [&] { return session.document().scene.kinds[0].textures; };
+  ASSERT_NE(textures().upper.detail, nullptr);
+  EXPECT_EQ(textures().upper.detail->colour, halves(0.5f)->colour);
+  ASSERT_NE(session.shownScene()->kinds[0].maps, nullptr);
+  const LeafTextures before = textures();
+  for (const auto& [image, wrong, why] : {std::tuple{LeafImage::lower, (folder / "none.png").string(), "none.png"},
+                                          std::tuple{LeafImage::lower, other, "must be of one size"},
+                                          std::tuple{LeafImage::lower_gloss, other, "in [0, 1]"}}) {
+    session.setLeafImage(0, image, wrong);
+    ASSERT_TRUE(comes([&] {
+      session.advance();
+      if (const auto result = session.take()) session.release(*result);
+      return session.messageIsError();
+    }));
+    EXPECT_NE(session.message().find(why), std::string::npos) << session.message();
+    EXPECT_EQ(session.message().find('\n'), std::string::npos);
+    EXPECT_EQ(textures(), before);
+    session.say("");
+  }
+  session.setLeafImage(0, LeafImage::lower_gloss, file);
+  session.undo();
+  session.edit(SetLeafImage{0, LeafImage::upper, nullptr});
+  ASSERT_TRUE(settle(session));
+  EXPECT_EQ(textures().upper.detail, nullptr);
+  ASSERT_NE(textures().lower.gloss, nullptr);
+  std::filesystem::remove_all(folder);
 }
 
 // A field is there when it has been solved along lines, and its preview counts with it as what a change made.
