@@ -196,9 +196,9 @@ bool Panels::drawUnderside(LeafUnderside& underside, const BandOptics& told, Ses
 
 // What the leaves of the picture do, which are those of the document as soon as they have been made.
 void Panels::drawMadeMaps(const Session& session) {
-  const auto& shown = session.shownScene();
-  if (!shown || kind >= shown->kinds.size() || !shown->kinds[kind].maps) return;
-  const TreeKind& made = shown->kinds[kind];
+  const auto& scene = session.shownScene();
+  if (!scene || kind >= scene->kinds.size() || !scene->kinds[kind].maps) return;
+  const TreeKind& made = scene->kinds[kind];
   heading("What follows");
   const float letter = ImGui::GetFontSize();
   picture(thumbnails.of(made.maps, LeafMapPart::upper_reflectance), "upper",
