@@ -320,7 +320,7 @@ class TraceRun {
     const auto band = static_cast<std::size_t>(options.band);
     const LeafOptics traced = scene.kinds.front().leaf[band];
     for (const TreeKind& kind : scene.kinds)
-      if (kind.leaf[band] != traced)
+      if (kind.leaf[band] != traced || kind.maps)
         throw InvalidInput("--other-leaf: must be for scenes whose leaves are all alike in the band");
     if (traced.gloss > 0.f) throw InvalidInput("--other-leaf: must be for scenes whose leaves have no gloss");
     for (const SceneMedium& medium : scene.media)
