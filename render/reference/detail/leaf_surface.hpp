@@ -81,9 +81,9 @@ class LeafSurface {
   // GlossyLeaf.
   template <typename Body>
   auto at(const Hit& hit, const Body& body) const {
-    const std::optional<glm::vec2> point = maps_ ? scene_->inImages(hit) : std::nullopt;
-    if (!point) return glossy_ ? body(*glossy_) : body(LambertSurface<N>{alike_});
-    const LeafPlace& place = maps_->places[maps_->placeAt(*point)];
+    const LeafPlace* const known = placeOf(hit);
+    if (!known) return glossy_ ? body(*glossy_) : body(LambertSurface<N>{alike_});
+    const LeafPlace& place = *known;
     const LeafFace &met = place.faces[hit.front ? 0 : 1], &other = place.faces[hit.front ? 1 : 0];
     const SurfaceOptics<N> optics{.reflectance = ofBands(met.reflectance),
                                   .transmittance = ofBands(place.transmittance)};
@@ -92,6 +92,14 @@ class LeafSurface {
       return typename LeafSides<N>::Side{.lobe = &(*lobes_)[face.roughness], .gloss = ofBands(face.gloss)};
     };
     return body(LeafSides<N>(sideOf(met), sideOf(other), optics));
+  }
+
+  // None where it is not known. Leaves that differ by side alone need no images.
+  const LeafPlace* placeOf(const Hit& hit) const {
+    if (!maps_) return nullptr;
+    if (maps_->places.size() == 1) return maps_->places.data();
+    const std::optional<glm::vec2> point = scene_->inImages(hit);
+    return point ? &maps_->places[maps_->placeAt(*point)] : nullptr;
   }
 
   BandLanes<N> ofBands(const glm::vec3& of_map) const {
