@@ -41,6 +41,10 @@ class MaterialReader {
     const std::vector<double>& base = material.pbrMetallicRoughness.baseColorFactor;
     const tinygltf::TextureInfo& texture = material.pbrMetallicRoughness.baseColorTexture;
     const bool has_colour = texture.index < 0 && base.size() >= 3;
+    if (texture.index >= 0) {
+      made.texture_coordinates = texture.texCoord;
+      setTransform(made, texture);
+    }
     if (has_colour) made.colour = glm::vec3(base[0], base[1], base[2]);
     if (has_colour) made.leaf = leafOf(material, *made.colour);
     if (material.alphaMode == "MASK" || material.alphaMode == "BLEND") {
@@ -50,8 +54,6 @@ class MaterialReader {
       opacity.by_alpha = true;
       if (texture.index >= 0) {
         setImage(opacity, texture.index, material.name);
-        made.texture_coordinates = texture.texCoord;
-        setTransform(made, texture);
       }
       made.opacity = opacity;
     }
