@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -76,9 +77,14 @@ ImageCorners cornersOf(const NamedTriangles& faces, std::size_t triangle) {
 
 // To a leaf triangle just added.
 void addPatch(TreeMesh& mesh, SharedPatches& patches, const NamedTriangles& faces, std::size_t triangle,
-              std::uint32_t mask) {
+              std::uint32_t mask, const std::string& source) {
   if (faces.texture_corners.empty() && mesh.masks.empty()) return;
   const ImageCorners corners = cornersOf(faces, triangle);
+  const bool all = std::ranges::none_of(corners, [](const glm::vec2& c) { return std::isnan(c.x + c.y); });
+  if (mask != LeafPatch::kNoMask && !all)
+    require(false,
+            source + ": leaf triangle " + std::to_string(mesh.patch_of_triangle.size() + 1) + ": texture coordinates",
+            "(missing)", "there, as its material has a mask (or --cards whole)");
   const bool known = mask != LeafPatch::kNoMask || isUsable(corners);
   mesh.patch_of_triangle.push_back(known ? patches.numberOf({corners, mask}) : TreeMesh::kNoPatch);
 }
@@ -126,7 +132,7 @@ ImportedTree assemble(NamedTriangles faces, const Verdict& verdict, const Import
       ++left_out;
     } else {
       tree.mesh.leaf_triangles.push_back(faces.triangles[i]);
-      addPatch(tree.mesh, patches, faces, i, of_part[part].mask);
+      addPatch(tree.mesh, patches, faces, i, of_part[part].mask, source);
     }
   }
   if (left_out > 0) tree.how += "; left out " + std::to_string(left_out) + " leaf triangles of transparent materials";

@@ -40,6 +40,8 @@ void GltfFaces::addPrimitive(const tinygltf::Primitive& primitive, const PlacedM
     ++skipped;
     return;
   }
+  require(primitive.material >= -1 && primitive.material < static_cast<int>(materials_.size()), source_ + ": material",
+          primitive.material, "one of the file's");
   for (const auto& [name, value] : primitive.extensions)
     require(!name.ends_with("_compression"), source_ + ": extension", shown(name), "none that compresses");
   const auto [found, is_new] = known.try_emplace(position->second);
@@ -81,9 +83,9 @@ GltfFaces::Corners GltfFaces::addVertices(int positions, const glm::dmat4& to_wo
 
 // The first of its vertices' places in their image; kNoTexture without any.
 std::uint32_t GltfFaces::textureOf(const tinygltf::Primitive& primitive, std::size_t vertices) {
-  const bool has_material = primitive.material >= 0 && static_cast<std::size_t>(primitive.material) < materials_.size();
   static const GltfMaterial none;
-  const GltfMaterial& material = has_material ? materials_[static_cast<std::size_t>(primitive.material)] : none;
+  const GltfMaterial& material =
+      primitive.material >= 0 ? materials_[static_cast<std::size_t>(primitive.material)] : none;
   const auto at = primitive.attributes.find("TEXCOORD_" + std::to_string(material.texture_coordinates));
   if (at == primitive.attributes.end()) return kNoTexture;
   const Numbers coordinates(model_, at->second, source_ + ": TEXCOORD");
@@ -138,8 +140,7 @@ void GltfFaces::addTriangles(const std::vector<std::uint32_t>& corners, int mode
 }
 
 std::uint32_t GltfFaces::partOf(const tinygltf::Primitive& primitive, const PlacedMesh& placed) {
-  const bool has_material = primitive.material >= 0 && static_cast<std::size_t>(primitive.material) < materials_.size();
-  const int index = has_material ? primitive.material : -1;
+  const int index = primitive.material;
   const auto [known, is_new] =
       part_of_.try_emplace({index, placed.mesh, placed.node}, static_cast<std::uint32_t>(faces.parts.size()));
   if (is_new) {
@@ -148,7 +149,7 @@ std::uint32_t GltfFaces::partOf(const tinygltf::Primitive& primitive, const Plac
               .groups = model_.meshes[static_cast<std::size_t>(placed.mesh)].name,
               .one_group = true,
               .colour = {}};
-    if (has_material) {
+    if (index >= 0) {
       const GltfMaterial& material = materials_[static_cast<std::size_t>(index)];
       part.material = material.name;
       part.colour = material.colour;

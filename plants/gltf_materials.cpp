@@ -62,7 +62,7 @@ class MaterialReader {
 
  private:
   // The share `factor` of what is not specular passes, in its own colour; the rest is reflected in the base colour.
-  static std::optional<FileLeafColours> leafOf(const tinygltf::Material& material, const glm::vec3& base) {
+  std::optional<FileLeafColours> leafOf(const tinygltf::Material& material, const glm::vec3& base) const {
     const auto found = material.extensions.find("KHR_materials_diffuse_transmission");
     if (found == material.extensions.end() || !found->second.IsObject()) return std::nullopt;
     const tinygltf::Value& extension = found->second;
@@ -71,6 +71,8 @@ class MaterialReader {
     const auto share = static_cast<float>(extension.Has("diffuseTransmissionFactor")
                                               ? extension.Get("diffuseTransmissionFactor").GetNumberAsDouble()
                                               : 0.);
+    require(share >= 0.f && share <= 1.f,
+            source_ + ": material \"" + shown(material.name) + "\": diffuseTransmissionFactor", share, "in [0, 1]");
     glm::vec3 colour(1.f);
     if (const tinygltf::Value& list = extension.Get("diffuseTransmissionColorFactor");
         list.IsArray() && list.ArrayLen() == 3)

@@ -150,8 +150,9 @@ class PlyReader {
     for (const auto& property : element.properties)
       for (std::size_t axis = 0; axis < 3; ++axis)
         if (property.name == std::string(1, "xyz"[axis]) && !property.count_type) found[axis] = true;
-    if (!found[0] || !found[1] || !found[2])
-      throw InvalidInput(source_ + ": the vertices of a PLY need properties x, y and z");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      require(found[axis], source_ + ": property " + "xyz"[axis] + " of the vertices", "(missing)",
+              "a number of each vertex");
     const std::array<std::size_t, 2> of_texture = textureProperties(element);
     const bool textured = of_texture[0] < element.properties.size();
     mesh_.vertices.reserve(mesh_.vertices.size() + element.count);
