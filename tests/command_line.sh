@@ -143,7 +143,7 @@ does '"absorbed_leaves"' trace leaf.obj --paths 1000 --json
 does '"models"' --json leaf.obj --paths 1000 --no-pictures -o report
 does "wrote" validate leaf.obj --paths 1000 --no-pictures -o report
 does "sky light" validate leaf.obj --paths 1000 --no-pictures -o report --stats
-does "picture 8 x 6" trace leaf.obj --only-picture --samples 4 --size 8 6 --date 2003-10-17T12:30:30-07:00 --place 39.74 -105.18 --field-of-view 90 --picture benches/p.png --tone-map filmic --quiet
+does "picture 8 x 6" trace leaf.obj --only-picture --samples 4 --size 8 6 --date 2003-10-17T12:30:30-07:00 --place 39.74 -105.18 --field-of-view 90 --picture p.png --tone-map filmic --quiet
 printf 'v 0 0 0\nv 0 1 0\nv 0 1 1\nusemtl leaf\nf 1 2 3\n' >upright.obj  # the sun does not see it
 # A map may be more than OpenGL reads at once: refused, with the option that says how large it is.
 printf "$square"'v 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\nusemtl leaf\nf 1 2 3 4\nf 5 6 7 8\n' >two.obj

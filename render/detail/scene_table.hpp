@@ -218,8 +218,6 @@ class SceneTable {
       value << "a table";
     else if (const auto* number = node.as_floating_point())
       value << fmt::format("{}", number->get());
-    else if (const auto* text = node.as_string())
-      value << '"' << text->get() << '"';
     else
       node.visit([&](const auto& v) { value << v; });
     throw InvalidInput(fmt::format("{}:{}: {} = {}: must be {}", file_, node.source().begin.line,
