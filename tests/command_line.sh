@@ -166,3 +166,5 @@ does "leaf area" voxelize read.vdb
 
 head -c "$(($(stat -c %s leaf.vdb) / 2))" leaf.vdb >truncated.vdb
 refuses "truncated.vdb" voxelize truncated.vdb
+
+conclude
