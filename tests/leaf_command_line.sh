@@ -3,7 +3,6 @@
 # and one line on stderr, and leave nothing behind. Usage: leaf_command_line.sh PATH_TO_SUNFLECK
 source "$(dirname "$0")/as_a_user.bash" "$1"
 
-printf 'v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nusemtl leaf\nf 1 2 3 4\n' >leaf.obj
 printf 'a,b\n1,2\n' >header.csv
 printf 'wavelength_nm,reflectance\n500,0.1\n' >few.csv
 printf 'wavelength_nm,reflectance\n500,2\n' >high.csv
@@ -82,7 +81,7 @@ refuses "nan.csv:2: reflectance = nan: must be" leaf --fit nan.csv
 refuses "negative.csv:2: wavelength_nm = -500: must be" leaf --fit negative.csv
 refuses "short.csv:2: 1 fields: must be 2" leaf --fit short.csv
 refuses "far.csv: must have at least one row in [400, 2500] nm" leaf --fit far.csv
-refuses "beech.csv: held sugar: must be one of" leaf --fit beech.csv --hold sugar=1
+refuses "--hold: held sugar: must be one of" leaf --fit beech.csv --hold sugar=1
 refuses "held protein: must be a content of this kind of leaf" leaf --fit beech.csv --hold protein=0.01
 refuses "--json" leaf --list --json
 refuses "--tissue: thickness: must be told" leaf --tissue absorption=1,scattering=2
@@ -97,4 +96,7 @@ refuses '--leaf-species = "oak": must be one of' trace leaf.obj --leaf-species o
 refuses "--leaf-prospect: water = 11: must be" render leaf.obj --leaf-prospect water=11 -o y.png
 refuses "--leaf-bands: must be with" validate leaf.obj --leaf-bands 450,550,670
 refuses "--leaf-bands: number of bands = 2: must be 3" trace leaf.obj --leaf-species corn --leaf-bands 450,550
+printf 'wavelength_nm,reflectance,transmittance\n500,0.7,0.5\n' >bright.csv
+refuses "bright.csv:2: reflectance + transmittance = 1.2: must be at most 1.1" leaf --fit bright.csv
+refuses "--hold: held foo: must be one of" leaf --fit beech.csv --hold foo=1
 conclude
