@@ -7,6 +7,7 @@
 #include "apps/commands.hpp"
 #include "apps/csv_rows.hpp"
 #include "apps/distinct_files.hpp"
+#include "apps/leaf_maps_output.hpp"
 #include "apps/leaf_options.hpp"
 #include "apps/leaf_output.hpp"
 #include "apps/leaf_tissue.hpp"
@@ -23,6 +24,8 @@ struct LeafCommand {
   bool parts = false, list = false;
   std::string tissue, sides;
   std::string csv, bands_csv, plot;
+  bool fit_maps = false;
+  LeafMapFiles maps;
 };
 
 constexpr std::array<std::string_view, 3> kHeaders{"wavelength_nm,reflectance,transmittance",
@@ -88,6 +91,10 @@ int runList(const RunOptions& run) {
 
 int runLeaf(const LeafCommand& options, const RunOptions& run) {
   if (options.list) return runList(run);
+  if (options.fit_maps) {
+    fmt::print("{}", fitMapsReport(options.maps, run.json));
+    return 0;
+  }
   if (!options.tissue.empty() || !options.sides.empty()) {
     fmt::print("{}",
                options.sides.empty() ? tissueReport(options.tissue, run.json) : sidesReport(options.sides, run.json));
@@ -130,6 +137,31 @@ std::string footer() {
                         content.high, content.unit, usual.*content.value);
   return text +
          "Protein and carbon-based constituents stand in for dry matter (PROSPECT-PRO). docs/LEAVES.md has more.";
+}
+
+// `others`: options that do not go with these.
+void addFitMaps(CLI::App& command, LeafCommand& leaf, const std::vector<CLI::Option*>& others) {
+  const std::string group = "A slab of tissue behind measured maps";
+  CLI::Option* fit_maps = command.add_flag(
+      "--fit-maps", leaf.fit_maps,
+      "Find tissue, albedo and thickness of every place from images of linear values; places of alpha below 0.5 are "
+      "off the leaf");
+  CLI::Option* upper =
+      command.add_option("--upper-reflectance", leaf.maps.upper_reflectance, "Image of what the upper side reflects");
+  CLI::Option* lower = command.add_option("--lower-reflectance", leaf.maps.lower_reflectance,
+                                          "Image of what the lower side reflects (as the upper if not given)");
+  CLI::Option* through = command.add_option("--transmittance", leaf.maps.transmittance, "Image of what is let through");
+  CLI::Option* thickness =
+      command.add_option("--thickness", leaf.maps.thickness, "Mean thickness of the leaf in mm (default 0.2)")
+          ->check(numberIn(1e-6, 500., "in [1e-6, 500] mm"));
+  CLI::Option* output = command.add_option(
+      "-o,--output", leaf.maps.output,
+      "NAME.png (16 bits) or NAME.exr: writes NAME_upper, NAME_lower and a scene of this leaf, NAME.toml");
+  fit_maps->group(group)->needs(upper)->needs(through)->needs(output);
+  for (CLI::Option* option : {upper, lower, through, thickness, output}) option->group(group)->needs(fit_maps);
+  for (CLI::Option* option : others) fit_maps->excludes(option);
+  for (CLI::Option* option : {upper, lower, through, output})
+    option->check([](const std::string& text) { return text.empty() ? "must not be empty" : std::string(); });
 }
 
 }  // namespace
@@ -177,6 +209,7 @@ void addLeaf(CLI::App& app, RunOptions& options, int& status) {
     list->excludes(option);
     option->check([](const std::string& text) { return text.empty() ? "must not be empty" : std::string(); });
   }
+  addFitMaps(*command, *leaf, {species, list, contents, fit, bands, csv, bands_csv, plot, tissue, sides});
   command->footer(footer());
   command->callback([leaf, &options, &status] { status = runLeaf(*leaf, options); });
 }

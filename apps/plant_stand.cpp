@@ -53,7 +53,9 @@ void readPositions(const std::string& file, std::uint64_t seed, Scene& scene) {
         }
         kind = scene.kinds.end() - 1;
         kind->name = name;
-        kind->leaf = scene.kinds.front().leaf;
+        kind->description = scene.kinds.front().description;
+        kind->textures = scene.kinds.front().textures;
+        setLeaves(*kind, scene.bands, scene.kinds.front().told());
       }
       tree.kind = static_cast<std::uint32_t>(kind - scene.kinds.begin());
     }

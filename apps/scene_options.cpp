@@ -88,7 +88,8 @@ void placeSun(const SceneOptions& options, Sun& sun) {
   sun.azimuth = static_cast<float>(stands.azimuth);
 }
 
-// Reflectance and transmittance of all leaves, everywhere and on both sides; a gloss stays.
+// Reflectance and transmittance of all leaves; a gloss stays, and textures do but under --albedo, which makes leaves
+// alike at all places.
 void changeLeaves(const SceneOptions& options, Scene& scene) {
   if (!options.leaves.bands.empty() && !options.leaves.given())
     throw InvalidInput("--leaf-bands: must be with --leaf-species or --leaf-prospect");
@@ -104,11 +105,13 @@ void changeLeaves(const SceneOptions& options, Scene& scene) {
   }
   for (TreeKind& kind : scene.kinds) {
     kind.description = leaf;
-    kind.maps = nullptr;
+    BandOptics told = kind.told();
     for (std::size_t band = 0; band < kBands; ++band) {
-      kind.leaf[band].reflectance = optics[band].reflectance;
-      kind.leaf[band].transmittance = optics[band].transmittance;
+      told[band].reflectance = optics[band].reflectance;
+      told[band].transmittance = optics[band].transmittance;
     }
+    if (options.albedo) kind.textures = {};
+    setLeaves(kind, scene.bands, told);
   }
   for (SceneMedium& medium : scene.media)
     if (!medium.particles) {

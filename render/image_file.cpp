@@ -76,6 +76,16 @@ Image decoded(const fs::path& file, std::string_view bytes, ImageValues values,
   return image;
 }
 
+void writeExr(const fs::path& file, const Image& image) {
+  writeWhole(file, [&](const fs::path& temporary) {
+    try {
+      detail::imageCodec().writeExr(temporary, image);
+    } catch (const std::runtime_error& e) {
+      throw InvalidInput(file.string() + ": cannot be written: " + e.what());
+    }
+  });
+}
+
 }  // namespace
 
 Image readRadiances(const fs::path& file) {
@@ -108,13 +118,23 @@ void writeImage(const fs::path& file, const Image& image, const Display& display
   if (lowered(file.extension().string()) == ".png")
     writeWhole(file, pngBytes(image, display));
   else
-    writeWhole(file, [&](const fs::path& temporary) {
-      try {
-        detail::imageCodec().writeExr(temporary, image);
-      } catch (const std::runtime_error& e) {
-        throw InvalidInput(file.string() + ": cannot be written: " + e.what());
-      }
-    });
+    writeExr(file, image);
+}
+
+void writeValues(const fs::path& file, const Image& image) {
+  assert(image.values.size() == image.at(0, image.height, 0));
+  requirePictureName(file);
+  if (lowered(file.extension().string()) == ".png") {
+    constexpr float kLargest = 65535.f;
+    std::vector<std::uint16_t> codes;
+    codes.reserve(image.values.size());
+    for (const float value : image.values)
+      codes.push_back(static_cast<std::uint16_t>(std::lround(kLargest * std::clamp(value, 0.f, 1.f))));
+    writeWhole(file, detail::imageCodec().linearPng(image.width, image.height, static_cast<int>(image.channels.size()),
+                                                    codes));
+  } else {
+    writeExr(file, image);
+  }
 }
 
 void writePng(const fs::path& file, int width, int height, std::span<const std::uint8_t> colours) {

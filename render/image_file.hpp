@@ -20,6 +20,10 @@ void writeImage(const std::filesystem::path& file, const Image& image, const Dis
 // InvalidInput on another extension or a place that cannot be written.
 void writePng(const std::filesystem::path& file, int width, int height, std::span<const std::uint8_t> colours);
 
+// Writes values as they stand: .exr as 32-bit floats, .png as whole numbers of 16 bits, cut to 0 .. 1; whole or not at
+// all. Channels "R", "G", "B" or "Y", with "A" after them or without. Throws as writeImage() does.
+void writeValues(const std::filesystem::path& file, const Image& image);
+
 // Throws InvalidInput unless a picture could be written at `file`: to be asked before long work.
 void requirePictureName(const std::filesystem::path& file);
 

@@ -47,6 +47,19 @@ std::vector<Bounds> prototypeBounds(const Scene& scene) {
 
 }  // namespace
 
+void setLeaves(TreeKind& kind, const LightBands& bands, const BandOptics& told) {
+  const BandOptics even = bandOptics(kind.description, bands, told);
+  std::shared_ptr<const LeafMaps> maps = leafMaps(kind.description, even, kind.textures);
+  kind.even = kind.leaf = even;
+  kind.maps = std::move(maps);
+  if (!kind.maps) return;
+  const int width = kind.maps->width, height = kind.maps->height;
+  if (!kind.shares || kind.shares->mesh != kind.mesh || kind.shares->width != width || kind.shares->height != height)
+    kind.shares = std::make_shared<const LeafShares>(
+        LeafShares{kind.mesh, width, height, leafAreaShares(*kind.mesh, width, height)});
+  kind.leaf = meanOptics(*kind.maps, kind.shares->at);
+}
+
 void intoOnePeriod(Stand& stand) {
   if (!stand.period || stand.trees.empty()) return;
   glm::vec2 low(stand.trees.front().position);

@@ -15,6 +15,7 @@
 #include "core/stand.hpp"
 #include "core/tree_mesh.hpp"
 #include "leaves/leaf_description.hpp"
+#include "leaves/leaf_textures.hpp"
 #include "plants/import.hpp"
 #include "render/camera.hpp"
 #include "render/scene_medium.hpp"
@@ -31,6 +32,13 @@ struct TreeRecipe {
   ImportRules rules;
 };
 
+// leafAreaShares() of a mesh, at images of one size.
+struct LeafShares {
+  std::shared_ptr<const TreeMesh> mesh;
+  int width = 1, height = 1;
+  std::vector<float> at{1.f};
+};
+
 // A kind of tree: its prototype and its optics.
 struct TreeKind {
   std::string name;    // what the scene's trees call it
@@ -39,10 +47,17 @@ struct TreeKind {
   Dropped dropped;  // triangles of no area that the file held
   std::shared_ptr<const TreeMesh> mesh;
   LeafDescription description;  // how its leaves are told; by numbers unless it says more
+  LeafTextures textures;        // what tells their places and sides apart
   BandOptics leaf;  // by numbers these; else what follows from the description in the scene's bands; with the gloss
-  // Where leaves are not alike on both sides and at all places: what each does, of which `leaf` is the mean.
+  // Where textures say more (setLeaves() keeps these three): the leaf that they vary, what each place and side does, of
+  // which `leaf` is the mean, and of which part of the leaf area each place is.
+  BandOptics even;
   std::shared_ptr<const LeafMaps> maps;
+  std::shared_ptr<const LeafShares> shares;
   glm::vec3 wood_reflectance{0.3f};  // Lambertian, per band [1], 0 .. 1
+
+  // The leaf as it is told, before textures: what a person edits.
+  const BandOptics& told() const { return textures.any() ? even : leaf; }
 };
 
 // A sun this low or lower has set: it gives no light. 89.9 degrees, also when rounded.
@@ -89,6 +104,13 @@ struct Scene {
   const Sun& sun() const { return suns.front(); }
   const TreeKind& kindOf(const Placement& tree) const { return kinds[tree.kind]; }
 };
+
+// Sets what the kind's leaves do to light, from its mesh, description and textures: `leaf`, `even`, `maps` and
+// `shares`. Shares are kept from one call to the next, as only another mesh or another size of images changes them:
+// then it takes some 20 ms for images of 720 x 540.
+//   told  reflectance and transmittance of leaves told by numbers, and the gloss; kind.told() keeps what they are
+// Throws InvalidInput as bandOptics() and leafMaps() do, and leaves the kind as it was.
+void setLeaves(TreeKind& kind, const LightBands& bands, const BandOptics& told);
 
 std::vector<const TreeMesh*> meshes(const Scene& scene);  // of the kinds
 // What the leaves of all kinds came from, for people.

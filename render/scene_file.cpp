@@ -118,6 +118,7 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
   kind.name = tree.text("name", kind.name);
   detail::readOptics(kind, tree, "leaf_", tree, "wood_", scene.bands);
   tree.done();
+  setLeaves(kind, scene.bands, kind.leaf);
 }
 
 // What is wrong in a table is told with the line at which it begins, where no line is told: of several [[tree]] it says
@@ -314,6 +315,7 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
     scene.kinds[0] = optics;
     scene.kinds[0].name = scene.kinds[0].source = "no tree";
     scene.kinds[0].mesh = std::make_shared<const TreeMesh>();
+    setLeaves(scene.kinds[0], scene.bands, optics.leaf);
   }
   requireBandsMatter(scene, optics, table, file);
   readStand(scene, section("stand"));
@@ -444,6 +446,8 @@ seed = 1
 # leaf_species = "beech"      # or by what they are: see [leaf]
 # leaf_prospect = { chlorophyll = 40.0 }
 # leaf_slab = { absorption = [1.5, 0.4, 5.0], scattering = 10.0, thickness = 0.2 }
+# leaf_maps = { upper = "oak_upper.png" }  # and by images: see [leaf]; {} for none
+# leaf_lower = { reflectance = 0.5 }
 # leaf_gloss = 0.0
 # leaf_gloss_roughness = 0.3
 # wood_reflectance = 0.3
@@ -488,6 +492,12 @@ transmittance = 0.475         # 0 to 1
 # bands_nm = [[620, 680], [520, 570], 450]   # what the three bands are, of species and contents alone: from and to, or one
                               # wavelength, 400 to 2500; red, green and blue as the eye has them if not given
 # slab = { absorption = [1.5, 0.4, 5.0], scattering = 10.0, thickness = 0.2 }   # or even tissue: 1/mm, 1/mm and mm
+# maps = { upper = "oak_upper.png", lower = "oak_lower.png", upper_gloss = "oak_gloss.png", albedo = 1.5, relief = 0.1 }
+                              # images of linear values of one size, at most 4096 a side, beside the scene file. upper,
+                              # lower: colour times albedo multiplies the reflectance, alpha is thickness of slab above
+                              # (2 alpha - 1) relief in mm; upper_gloss, lower_gloss: gloss, and in alpha its roughness.
+                              # A lower side without is as the upper. albedo = 1.0 and relief = 0.1 if not given
+# lower = { reflectance = 0.5, gloss = 0.0, gloss_roughness = 0.3 }   # or what is different on the lower side, by numbers
 gloss = 0.0                   # intensity of a glossy reflection on both sides, 0 to 1; the two above are then shares of
                               # the light it lets in. trace and render take it, validate does not
 gloss_roughness = 0.3         # root mean square slope of its facets, 0.05 to 1; one number

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "leaves/measured_leaves.hpp"
+#include "render/leaf_texture_file.hpp"
 
 namespace sunfleck::detail {
 namespace {
@@ -63,6 +64,45 @@ LeafByContents readContents(SceneTable& table, const std::string& prefix) {
   return leaf;
 }
 
+LeafSideTextures readSide(SceneTable& maps, const std::string& side, const std::filesystem::path& folder) {
+  LeafSideTextures read;
+  const auto image = [&](const std::string& key, float most) {
+    return maps.has(key) ? readLeafTexture(folder / maps.text(key, ""), most) : nullptr;
+  };
+  read.detail = image(side, kMostLeafAlbedo);
+  read.gloss = image(side + "_gloss", 1.f);
+  return read;
+}
+
+// What the table tells by `maps` takes the place of all images that there were, `lower` that of all numbers of the
+// lower side; empty, they take them away.
+void readTextures(SceneTable& table, const std::string& prefix, LeafTextures& textures) {
+  const std::filesystem::path folder = std::filesystem::path(table.file()).parent_path();
+  const bool has_maps = table.has(prefix + "maps"), has_lower = table.has(prefix + "lower");
+  if (has_maps) {
+    SceneTable maps = table.within(prefix + "maps");
+    LeafTextures read{.upper = readSide(maps, "upper", folder), .lower = readSide(maps, "lower", folder)};
+    read.albedo = maps.perBand("albedo", read.albedo, double{kMostLeafAlbedo});
+    read.relief = maps.number("relief", read.relief, 0., 1000., "in [0, 1000] mm");
+    maps.done();
+    read.underside = textures.underside;
+    textures = std::move(read);
+    if (textures.lower.any() && !has_lower) textures.underside = {};
+  }
+  if (has_lower) {
+    SceneTable lower = table.within(prefix + "lower");
+    textures.underside = {};
+    if (lower.has("reflectance")) textures.underside.reflectance = lower.perBand("reflectance", {});
+    if (lower.has("gloss")) textures.underside.gloss = lower.perBand("gloss", {});
+    if (lower.has("gloss_roughness"))
+      textures.underside.gloss_roughness =
+          static_cast<float>(lower.number("gloss_roughness", 0., 0.05, 1., "in [0.05, 1]"));
+    lower.done();
+    if (textures.underside.any() && !has_maps) textures.lower = {};
+  }
+  if (has_maps || has_lower) validate(textures, fmt::format("{}: [{}]", table.file(), table.name()));
+}
+
 }  // namespace
 
 LightBands readLightBands(SceneTable& leaf) {
@@ -118,6 +158,7 @@ void readOptics(TreeKind& kind, SceneTable& leaf, const std::string& leaf_prefix
     optics.gloss_roughness = roughness;
     validate(optics);
   }
+  readTextures(leaf, leaf_prefix, kind.textures);
   kind.wood_reflectance = wood.perBand(wood_prefix + "reflectance", kind.wood_reflectance);
 }
 

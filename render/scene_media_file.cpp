@@ -23,6 +23,10 @@ void readOptics(SceneMedium& medium, SceneTable& table, const TreeKind& of_scene
     medium.description = LeafByNumbers{};
     optics = *of_cells;
   }
+  if (of_scene.textures.any() && !medium.grid && !tellsLeafShares(table, ""))
+    throw InvalidInput(table.file() +
+                       ": [medium] has the leaves of [leaf], which have maps or a lower side: must tell "
+                       "its own, by reflectance, species, prospect or slab");
   readLeafShares(table, "", bands, medium.description, optics);
   for (std::size_t band = 0; band < kBands; ++band) {
     medium.optics[band] = {.reflectance = optics[band].reflectance, .transmittance = optics[band].transmittance};

@@ -179,11 +179,42 @@ class Writer {
 
   // Keys of leaves, alone or each with `prefix` before it.
   void writeLeaf(const TreeKind& kind, const std::string& prefix) {
-    writeShares(kind.description, kind.leaf, prefix);
+    const BandOptics& told = kind.told();
+    writeShares(kind.description, told, prefix);
     glm::vec3 gloss;
-    for (std::size_t band = 0; band < kBands; ++band) gloss[static_cast<int>(band)] = kind.leaf[band].gloss;
+    for (std::size_t band = 0; band < kBands; ++band) gloss[static_cast<int>(band)] = told[band].gloss;
     key(prefix + "gloss", perBand(gloss));
-    key(prefix + "gloss_roughness", number(kind.leaf[0].gloss_roughness));
+    key(prefix + "gloss_roughness", number(told[0].gloss_roughness));
+    writeTextures(kind, prefix);
+  }
+
+  void writeTextures(const TreeKind& kind, const std::string& prefix) {
+    const LeafTextures& textures = kind.textures;
+    std::string keys;
+    const auto add = [&](const std::string& name, const std::string& value) {
+      keys += fmt::format("{}{} = {}", keys.empty() ? "" : ", ", name, value);
+    };
+    const auto image = [&](const std::string& name, const std::shared_ptr<const LeafTexture>& texture) {
+      if (!texture) return;
+      if (texture->file.empty()) refuse(fmt::format("maps of leaves of \"{}\" came from no file", kind.name));
+      add(name, path(texture->file));
+    };
+    image("upper", textures.upper.detail);
+    image("upper_gloss", textures.upper.gloss);
+    image("lower", textures.lower.detail);
+    image("lower_gloss", textures.lower.gloss);
+    if (!keys.empty()) {
+      add("albedo", perBand(textures.albedo));
+      add("relief", number(textures.relief));
+      key(prefix + "maps", inlineTable(keys));
+    }
+    if (const LeafUnderside& lower = textures.underside; lower.any()) {
+      keys.clear();
+      if (lower.reflectance) add("reflectance", perBand(*lower.reflectance));
+      if (lower.gloss) add("gloss", perBand(*lower.gloss));
+      if (lower.gloss_roughness) add("gloss_roughness", number(*lower.gloss_roughness));
+      key(prefix + "lower", inlineTable(keys));
+    }
   }
 
   void writeOptics(const TreeKind& kind) {

@@ -2,14 +2,17 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "core/require.hpp"
 #include "leaves/light_bands.hpp"
 #include "leaves/measured_leaves.hpp"
 #include "leaves/prospect.hpp"
 #include "leaves/slab_leaf.hpp"
+#include "render/leaf_texture_file.hpp"
 #include "render/scene_file.hpp"
 #include "render/scene_writer.hpp"
 #include "render/sweep_file.hpp"
@@ -230,6 +233,129 @@ TEST_F(SceneLeaf, RefusesWhatIsNoLeaf) {
           "[leaf] has both species and slab: must be one of them");
   EXPECT_NE(refusal("[tree]\nfile = \"tree.obj\"\nleaf_species = \"oak\"\n").find("tree.leaf_species = \"oak\""),
             std::string::npos);
+}
+
+// Images that a scene's leaves have, in the test's folder.
+void writeTextures(const fs::path& folder) {
+  LeafTexture detail{.width = 4, .height = 2, .colour = std::vector<glm::vec3>(8, {0.5f, 0.25f, 1.f}), .alpha = {}};
+  for (int i = 0; i < 8; ++i) detail.alpha.push_back(static_cast<float>(i) / 7.f);
+  writeLeafTexture(folder / "upper.png", detail);
+  detail.colour[0] = glm::vec3(2.f);
+  writeLeafTexture(folder / "lower.exr", detail);
+  detail.colour.assign(8, glm::vec3(0.125f));
+  writeLeafTexture(folder / "gloss.exr", detail);
+}
+
+// Check that images and a lower side reach every kind as told, that the leaf is their mean, and that a scene written
+// and read again has the same.
+TEST_F(SceneLeaf, HasMapsAndALowerSide) {
+  writeTextures(folder_);
+  const Scene scene = readScene(write("s.toml", R"(
+[leaf]
+slab = { absorption = [2.0, 0.5, 4.0], scattering = 10.0, thickness = 0.2 }
+maps = { upper = "upper.png", lower = "lower.exr", upper_gloss = "gloss.exr", albedo = [1.5, 1.0, 1.0], relief = 0.05 }
+[[tree]]
+file = "tree.obj"
+name = "maps"
+[[tree]]
+file = "tree.obj"
+name = "numbers"
+leaf_lower = { reflectance = [0.1, 0.2, 0.3], gloss_roughness = 0.5 }
+[[tree]]
+file = "tree.obj"
+name = "even"
+leaf_maps = {}
+[[tree]]
+file = "tree.obj"
+name = "two sides"
+leaf_reflectance = 0.3
+leaf_transmittance = 0.2
+leaf_maps = {}
+leaf_lower = { reflectance = 0.5 }
+[stand]
+kind = "positions"
+positions = [[0, 0], [3, 0], [6, 0], [9, 0]]
+)"));
+  const TreeKind& maps = scene.kinds[0];
+  ASSERT_TRUE(maps.maps);
+  EXPECT_EQ(maps.maps->width, 4);
+  const auto& texture = *maps.textures.upper.detail;
+  EXPECT_NEAR(texture.colour[3].y, 0.25f, 1e-5f);  // 16 bits, as they stand
+  EXPECT_NEAR(texture.alpha[3], 3.f / 7.f, 1e-5f);
+  EXPECT_EQ(maps.textures.lower.detail->colour[0], glm::vec3(2.f));  // not multiplied by its alpha of 0
+  EXPECT_EQ(maps.leaf, meanOptics(*maps.maps, leafAreaShares(*maps.mesh, 4, 2)));
+  EXPECT_NE(maps.leaf, maps.told());
+  EXPECT_EQ(maps.maps->places[0].faces[1].gloss, glm::vec3(0.125f));
+  ASSERT_TRUE(scene.kinds[1].maps);
+  EXPECT_FALSE(scene.kinds[1].textures.lower.any());
+  EXPECT_NEAR(scene.kinds[1].maps->places[0].faces[1].reflectance.y, 0.2f, 1e-7f);
+  EXPECT_FALSE(scene.kinds[2].maps);
+  EXPECT_EQ(scene.kinds[2].leaf, maps.told());
+  ASSERT_TRUE(scene.kinds[3].maps);
+  EXPECT_EQ(scene.kinds[3].maps->places.size(), 1u);
+  EXPECT_NEAR(scene.kinds[3].leaf[0].reflectance, 0.4f, 1e-6f);
+  const Scene again = readScene(write("again.toml", sceneText(scene, folder_)));
+  for (std::size_t kind = 0; kind < 4; ++kind) {
+    EXPECT_EQ(again.kinds[kind].leaf, scene.kinds[kind].leaf) << kind;
+    EXPECT_EQ(again.kinds[kind].told(), scene.kinds[kind].told()) << kind;
+    EXPECT_EQ(again.kinds[kind].textures.underside, scene.kinds[kind].textures.underside) << kind;
+    ASSERT_EQ(again.kinds[kind].maps == nullptr, scene.kinds[kind].maps == nullptr) << kind;
+    if (scene.kinds[kind].maps) {
+      EXPECT_EQ(*again.kinds[kind].maps, *scene.kinds[kind].maps) << kind;
+    }
+  }
+  // Set anew with other tissue, images and shares stay.
+  TreeKind edited = maps;
+  std::get<LeafByTissue>(edited.description).thickness = 0.4;
+  setLeaves(edited, scene.bands, edited.told());
+  EXPECT_EQ(edited.shares, maps.shares);
+  EXPECT_LT(edited.leaf[0].transmittance, maps.leaf[0].transmittance);
+  Scene unsaved = scene;
+  auto made = std::make_shared<LeafTexture>(texture);
+  made->file.clear();
+  unsaved.kinds[0].textures.upper.detail = made;
+  EXPECT_THROW(sceneText(unsaved, folder_), InvalidInput);
+}
+
+// Check that images that are none, or are made to do harm, are told in one line.
+TEST_F(SceneLeaf, RefusesBadMaps) {
+  writeTextures(folder_);
+  const auto refuses = [&](const std::string& keys, const std::string& expected) {
+    const std::string message = refusal("[tree]\nfile = \"tree.obj\"\n[leaf]\n" + keys + "\n");
+    EXPECT_NE(message.find(expected), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  };
+  refuses("maps = 3", "leaf.maps = 3: must be a table");
+  refuses("maps = { top = \"upper.png\" }", "unknown key \"top\" in [leaf.maps]");
+  refuses("maps = { upper = \"none.png\" }", "none.png: cannot be read: there is no such file");
+  refuses("maps = { upper = \".\" }", "cannot be read");
+  refuses("maps = { upper = \"upper.png\", albedo = 101 }", "leaf.maps.albedo = 101: must be in [0, 100]");
+  refuses("maps = { upper = \"upper.png\", relief = nan }", "leaf.maps.relief = nan: must be in [0, 1000] mm");
+  refuses("lower = { reflectance = 1.5 }", "leaf.lower.reflectance = 1.5: must be in [0, 1]");
+  refuses("lower = { gloss_roughness = 0.01 }", "leaf.lower.gloss_roughness = 0.01: must be in [0.05, 1]");
+  refuses("lower = { reflectance = 0.5 }\nmaps = { lower = \"lower.exr\" }",
+          "[leaf]: has both lower images and a lower side by numbers: must be one of them");
+  writeLeafTexture(folder_ / "small.png", {.width = 2, .height = 2, .colour = std::vector<glm::vec3>(4), .alpha = {}});
+  refuses("maps = { upper = \"upper.png\", lower = \"small.png\" }", "must be of one size");
+  refuses("maps = { upper_gloss = \"lower.exr\" }", "lower.exr: a value = 2: must be in [0, 1]");
+  std::ifstream whole(folder_ / "upper.png", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(whole)), {});
+  write("cut.png", bytes.substr(0, bytes.size() / 2));
+  refuses("maps = { upper = \"cut.png\" }", "cut.png: cannot be read");
+  write("text.png", "no image at all");
+  refuses("maps = { upper = \"text.png\" }", "text.png: cannot be read");
+  LeafTexture bad{.width = 1, .height = 1, .colour = {{std::nanf(""), 0.f, 0.f}}, .alpha = {}};
+  writeLeafTexture(folder_ / "bad.exr", bad);
+  refuses("maps = { upper = \"bad.exr\" }", "it holds a value that is not a finite number");
+  bad.colour[0].x = -0.5f;
+  writeLeafTexture(folder_ / "bad.exr", bad);
+  refuses("maps = { upper = \"bad.exr\" }", "bad.exr: a value = -0.5: must be in [0, 100]");
+  writeLeafTexture(folder_ / "wide.png",
+                   {.width = 4097, .height = 1, .colour = std::vector<glm::vec3>(4097), .alpha = {}});
+  refuses("maps = { upper = \"wide.png\" }", "must be at most 4096 x 4096");
+  refuses("maps = { upper = \"upper.png\" }\n[medium]\ndensity = 1.0\nbox = [0, 0, 0, 1, 1, 1]",
+          "[medium] has the leaves of [leaf], which have maps or a lower side");
+  refuses("[medium]\ndensity = 1.0\nbox = [0, 0, 0, 1, 1, 1]\nmaps = {}", "unknown key \"maps\" in [medium]");
 }
 
 // Check a sweep over species and wavelengths: every one at every one.

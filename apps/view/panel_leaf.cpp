@@ -89,7 +89,7 @@ void Panels::drawLeaf(Session& session) {
       if (ImGui::Selectable(scene.kinds[i].name.c_str(), i == kind)) kind = i;
     ImGui::EndCombo();
   }
-  BandOptics leaf = scene.kinds[kind].leaf;
+  BandOptics leaf = scene.kinds[kind].told();
   LeafDescription description = scene.kinds[kind].description;
   glm::vec3 wood = scene.kinds[kind].wood_reflectance;
   heading("Leaves");

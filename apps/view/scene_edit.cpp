@@ -70,10 +70,12 @@ struct Apply {
     require(edit.kind < document.scene.kinds.size(), "kind", edit.kind + 1, "one of the scene's kinds");
     for (const LeafOptics& leaf : edit.leaf) validate(leaf);
     requireShares(edit.wood_reflectance, "reflectance of wood");
-    TreeKind& kind = document.scene.kinds[edit.kind];
-    kind.leaf = bandOptics(edit.description, document.scene.bands, edit.leaf);
+    TreeKind kind = document.scene.kinds[edit.kind];
     kind.description = edit.description;
+    if (edit.textures) kind.textures = *edit.textures;
     kind.wood_reflectance = edit.wood_reflectance;
+    setLeaves(kind, document.scene.bands, edit.leaf);
+    document.scene.kinds[edit.kind] = std::move(kind);
   }
   void operator()(const SetModel& edit) const { document.model = edit.model; }
   void operator()(const SetEffort& edit) const {
@@ -121,7 +123,7 @@ struct Apply {
     const auto taken = [&](const std::string& name) {
       return std::ranges::any_of(document.scene.kinds, [&](const TreeKind& other) { return other.name == name; });
     };
-    kind.leaf = bandOptics(kind.description, document.scene.bands, kind.leaf);
+    setLeaves(kind, document.scene.bands, kind.told());
     for (int number = 2; taken(kind.name); ++number) kind.name = edit.kind.name + " " + std::to_string(number);
     document.scene.kinds.push_back(std::move(kind));
     document.scene.stand.trees.push_back(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -21,9 +22,10 @@ struct SetGround {
 };
 struct SetOptics {
   std::size_t kind;
-  BandOptics leaf;                   // of leaves that are told by numbers; of others the gloss alone
-  glm::vec3 wood_reflectance;        // [1], 0 .. 1
-  LeafDescription description = {};  // how the leaves are told
+  BandOptics leaf;                            // of leaves that are told by numbers; of others the gloss alone
+  glm::vec3 wood_reflectance;                 // [1], 0 .. 1
+  LeafDescription description = {};           // how the leaves are told
+  std::optional<LeafTextures> textures = {};  // none: those of the kind stay
 };
 struct SetModel {
   Model model;

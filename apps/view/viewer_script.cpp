@@ -148,7 +148,7 @@ void Viewer::executeEdit(const ScriptStep& step) {
     effort.*member = whole(step, 0, 0);
     session_.edit(SetEffort{effort});
   };
-  BandOptics leaf = scene.kinds[kind].leaf;
+  BandOptics leaf = scene.kinds[kind].told();
   const auto setLeaf = [&](const LeafDescription& told) {
     session_.edit(SetOptics{kind, leaf, scene.kinds[kind].wood_reflectance, told});
   };

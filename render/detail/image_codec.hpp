@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -34,6 +35,8 @@ class ImageCodec {
   virtual void writeExr(const std::filesystem::path& file, const Image& image) const = 0;
   // A PNG of 8-bit sRGB codes, row after row.
   virtual std::string png(int width, int height, int channels, std::span<const std::uint8_t> codes) const = 0;
+  // A PNG of 16-bit values, proportional to what they tell, colours not multiplied by alpha.
+  virtual std::string linearPng(int width, int height, int channels, std::span<const std::uint16_t> codes) const = 0;
 };
 
 const ImageCodec& imageCodec();

@@ -55,14 +55,28 @@ class OpenImageIoCodec final : public ImageCodec {
   }
 
   std::string png(int width, int height, int channels, std::span<const std::uint8_t> codes) const override {
+    OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return pngOf(spec, codes.data());
+  }
+
+  std::string linearPng(int width, int height, int channels, std::span<const std::uint16_t> codes) const override {
+    OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT16);
+    spec.attribute("oiio:ColorSpace", "linear");
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (channels == 2 || channels == 4) spec.alpha_channel = channels - 1;
+    return pngOf(spec, codes.data());
+  }
+
+ private:
+  // Of values in the spec's format.
+  static std::string pngOf(const OIIO::ImageSpec& spec, const void* codes) {
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput memory(bytes);
     const auto out = OIIO::ImageOutput::create("png");
     if (!out) fail(OIIO::geterror());
-    OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    if (!out->set_ioproxy(&memory) || !out->open("picture.png", spec) ||
-        !out->write_image(OIIO::TypeDesc::UINT8, codes.data()) || !out->close())
+    if (!out->set_ioproxy(&memory) || !out->open("picture.png", spec) || !out->write_image(spec.format, codes) ||
+        !out->close())
       fail(out->geterror());
     return {bytes.begin(), bytes.end()};
   }

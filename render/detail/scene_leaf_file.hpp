@@ -18,7 +18,8 @@ bool tellsLeafShares(const SceneTable& table, const std::string& prefix);
 void readLeafShares(SceneTable& table, const std::string& prefix, const LightBands& bands, LeafDescription& leaf,
                     BandOptics& optics);
 
-// Optics of leaves and wood: those of the tables, or else those that the kind has already.
+// Optics of leaves and wood and textures: those of the tables, or else those that the kind has already. What follows
+// from textures is for setLeaves() to say.
 void readOptics(TreeKind& kind, SceneTable& leaf, const std::string& leaf_prefix, SceneTable& wood,
                 const std::string& wood_prefix, const LightBands& bands);
 
