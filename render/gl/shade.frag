@@ -65,7 +65,9 @@ uint placeInMaps(uint kind, uint triangle, vec3 there, Sight look, float away, f
   uint place = kNoLeafPlace;
 #ifdef MAPS
   uint first = kind_frames[kind].images.x;
-  if (first != 0u) {
+  // Leaves that differ by side alone need no images.
+  if (kinds[kind].maps.x == 1u && kinds[kind].maps.y == 1u) place = leafPlace(kind, vec2(0.0), 1.0);
+  else if (first != 0u) {
     int texel = 2 * int(first - 1u + triangle);
     vec4 u = texelFetch(image_maps, texel), v = texelFetch(image_maps, texel + 1);
     float side = length(pixel_right.xyz);  // of the pixel there [m]
