@@ -58,13 +58,13 @@ nlohmann::ordered_json json(const StandBench& bench) {
 
 }  // namespace
 
-int runBenchStand(std::size_t most_trees, const std::string& folder_name, const RunOptions& run) {
+int runBenchStand(std::size_t most_trees, int rounds, const std::string& folder_name, const RunOptions& run) {
   const std::filesystem::path folder(folder_name);
   const OutputFolder made(folder);
   const auto csv = folder / "stand_bench.csv", svg = folder / "stand_bench.svg";
   requireWritable(csv);
   requireWritable(svg);
-  const StandBench bench = benchStands(most_trees, terminalProgress("measuring", run.quiet));
+  const StandBench bench = benchStands(most_trees, rounds, terminalProgress("measuring", run.quiet));
   if (bench.rows.empty()) {
     fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
     return 1;

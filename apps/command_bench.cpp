@@ -103,12 +103,17 @@ void addBench(CLI::App& app, RunOptions& options, int& status) {
       [scene, folder, &options, &status] { status = runBenchDirections(*scene, *folder, options); });
 
   auto trees = std::make_shared<std::size_t>(1024);
+  auto rounds = std::make_shared<int>(3);
   CLI::App* of_stand = addCommand(*bench, options, "stand",
                                   "What stands of trees cost to prepare and to change, beside the paper's Table 4");
   folderOption(*of_stand, "stand_bench.csv and stand_bench.svg");
   of_stand->add_option("--trees", *trees, "Trees of the largest stand, 16 to 50000 (default 1024; 10000 take 1.3 GB)")
       ->transform(wholeNumberIn(16., 5e4, "a whole number, 16 to 50000"));
-  of_stand->callback([trees, folder, &options, &status] { status = runBenchStand(*trees, *folder, options); });
+  of_stand
+      ->add_option("--rounds", *rounds, "Rounds of stands of up to 64 trees, of which the median is told (default 3)")
+      ->transform(wholeNumberIn(1., 100., "a whole number, 1 to 100"));
+  of_stand->callback(
+      [trees, rounds, folder, &options, &status] { status = runBenchStand(*trees, *rounds, *folder, options); });
 
   auto forest = std::make_shared<std::size_t>(1024);
   auto near = std::make_shared<std::size_t>(1000);

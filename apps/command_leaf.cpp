@@ -56,6 +56,8 @@ void readMeasured(const std::string& file, LeafReport& leaf) {
       shares[i - 1] = numberAt(row.fields[i], where + ": ");
       require(shares[i - 1] >= -0.1 && shares[i - 1] <= 1.1, where, shares[i - 1], "in [-0.1, 1.1]");
     }
+    require(row.fields.size() < 3 || shares[0] + shares[1] <= 1.1, row.where + "reflectance + transmittance",
+            shares[0] + shares[1], "at most 1.1: 1, and 0.1 for the noise of what is measured");
     if (wavelength < kFirstWavelength || wavelength > kLastWavelength) {
       ++leaf.left_out;
       continue;
@@ -74,7 +76,8 @@ void fitTo(const LeafCommand& options, LeafReport& leaf) {
   try {
     leaf.fit = fitProspect(leaf.measured, settings);
   } catch (const InvalidInput& e) {
-    throw InvalidInput(options.fit + ": " + e.what());
+    const std::string wrong = e.what();
+    throw InvalidInput((wrong.starts_with("held ") ? "--hold: " : options.fit + ": ") + wrong);
   }
   leaf.contents = leaf.fit->contents;
   leaf.title = std::filesystem::path(options.fit).filename().string();

@@ -131,6 +131,18 @@ void takeFile(Plant& plant, const PlantOptions& options) {
   }
 }
 
+// Throws InvalidInput, of a scene file by saying that it is one.
+TreeKind grownFrom(const std::string& species_or_file, std::uint64_t seed) {
+  try {
+    return grownKind(species_or_file, seed);
+  } catch (const InvalidInput&) {
+    if (isSceneFile(species_or_file))
+      throw InvalidInput(species_or_file +
+                         ": is a scene file: must be a species' parameters, as --write-species writes them");
+    throw;
+  }
+}
+
 Plant plantOf(const PlantOptions& options, const RunOptions& run) {
   Plant plant;
   constexpr LeafOptics kLeaf{.reflectance = 0.475f, .transmittance = 0.475f};  // that of scene files without others
@@ -142,7 +154,7 @@ Plant plantOf(const PlantOptions& options, const RunOptions& run) {
   } else if (isGrown(options.input)) {
     const std::string& name = options.input.empty() ? options.species : options.input;
     const BandOptics leaf = plant.kinds.front().leaf;
-    plant.kinds.front() = grownKind(name, run.seed);
+    plant.kinds.front() = grownFrom(name, run.seed);
     plant.kinds.front().leaf = leaf;
     plant.source = fmt::format("{}, seed {}", name, run.seed);
   } else {
@@ -191,7 +203,37 @@ Scene sceneOf(const Plant& plant) {
   return scene;
 }
 
-int runPlant(const PlantOptions options, const RunOptions& run) {
+// Options that say nothing of what is done would be ignored.
+void requireFitting(const CLI::App& command, const PlantOptions& options) {
+  using Names = std::vector<std::string>;
+  static const Names import{"--leaf", "--wood", "--scale", "--unit", "--up", "--cards", "--mesh"};
+  static const Names common{"--json", "--quiet", "--threads", "--seed"};
+  const auto joined = [](Names names, const Names& more) {
+    names.insert(names.end(), more.begin(), more.end());
+    return names;
+  };
+  const auto allow = [&](const Names& allowed, const std::string& beside) {
+    for (const CLI::Option* option : command.get_options())
+      if (option->count() > 0 && std::ranges::find(allowed, option->get_name()) == allowed.end())
+        throw InvalidInput(fmt::format("{}: must be without {}", option->get_name(), beside));
+  };
+  if (options.list) return allow(joined(common, {"--list"}), "--list");
+  if (!options.write_species.empty()) return allow(joined(common, {"--write-species"}), "--write-species");
+  if (!options.gallery.empty())
+    return allow(joined(joined(common, import), {"--gallery", "input", "files"}), "--gallery");
+  if (options.input == kTurbidEllipsoid)
+    return allow(joined(common, {"input", "--output", "--size", "--density", "--cell-size"}), kTurbidEllipsoid);
+  for (const char* option : {"--density", "--cell-size"})
+    if (command.count(option) > 0) throw InvalidInput(fmt::format("{}: must be for {}", option, kTurbidEllipsoid));
+  for (const char* option : {"--size", "--leaves", "--leaf-side"})
+    if (command.count(option) > 0 && options.input != kRandomCrown)
+      throw InvalidInput(fmt::format("{}: must be for {}", option, kRandomCrown));
+  for (const std::string& option : import)
+    if (command.count(option) > 0 && !isFile(options.input))
+      throw InvalidInput(fmt::format("{}: must be for a mesh file, not for {}", option, options.input));
+}
+
+int runPlant(const PlantOptions& options, const RunOptions& run) {
   if (options.list) {
     for (const std::string& name : speciesNames()) fmt::print("{}\n", name);
     return 0;
@@ -200,7 +242,10 @@ int runPlant(const PlantOptions options, const RunOptions& run) {
   if (!options.gallery.empty()) {
     std::vector<std::string> files = options.gallery_files;
     if (!options.input.empty()) files.insert(files.begin(), options.input);
-    writeGallery(options.gallery, files, options.import.rules(), run);
+    if (!writeGallery(options.gallery, files, options.import.rules(), run)) {
+      fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
+      return 1;
+    }
     if (run.json)
       fmt::print("{}\n", nlohmann::ordered_json{{"gallery", options.gallery}}.dump(2));
     else
@@ -258,7 +303,8 @@ void addStandOptions(CLI::App& command, PlantOptions& plant) {
       command.add_option("--stand", plant.stand.kind,
                          "Plant many, into a scene file (.toml) or .glb: regular, jittered, poisson (no "
                          "crowns overlap) or a .csv file of x,y[,rotation_deg[,species]]");
-  stand->group(group);
+  stand->group(group)->check(
+      [](const std::string& text) { return text.empty() ? "must not be empty" : std::string(); });
   command.add_option("--area", plant.stand.area, "Sides of the rectangle [m] (default 5 times the spacing)")
       ->expected(2)
       ->check(numberIn(1e-3, 1e6, "in [1e-3, 1e6] m"))
@@ -326,7 +372,10 @@ void addPlant(CLI::App& app, RunOptions& options, int& status) {
     command->get_option(of_input)->needs(input);
   addStandOptions(*command, *plant);
   addTestObjectOptions(*command, *plant);
-  command->callback([plant, &options, &status] { status = runPlant(*plant, options); });
+  command->callback([plant, command, &options, &status] {
+    requireFitting(*command, *plant);
+    status = runPlant(*plant, options);
+  });
 }
 
 }  // namespace sunfleck::apps

@@ -57,7 +57,7 @@ std::shared_ptr<const TreeMesh> treeOf(const std::string& file, const ImportRule
 
 }  // namespace
 
-void writeGallery(const std::filesystem::path& sheet_file, const std::vector<std::string>& files,
+bool writeGallery(const std::filesystem::path& sheet_file, const std::vector<std::string>& files,
                   const ImportRules& rules, const RunOptions& run) {
   requireNamed(sheet_file, ".png");
   requireWritable(sheet_file);
@@ -68,13 +68,16 @@ void writeGallery(const std::filesystem::path& sheet_file, const std::vector<std
   std::size_t done = 0;
   const auto drawAt = [&](std::size_t place, const std::string& name, const TreeMesh& mesh) {
     draw(sheet, place, name, mesh);
-    if (progress) progress(static_cast<double>(++done) / static_cast<double>(names.size() + files.size()));
+    return progress(static_cast<double>(++done) / static_cast<double>(names.size() + files.size()));
   };
   // Files first: one that cannot be read is refused before long work.
   for (std::size_t i = 0; i < files.size(); ++i)
-    drawAt(names.size() + i, std::filesystem::path(files[i]).filename().string(), *treeOf(files[i], rules));
-  for (std::size_t i = 0; i < names.size(); ++i) drawAt(i, names[i], grow(species(names[i]), run.seed));
+    if (!drawAt(names.size() + i, std::filesystem::path(files[i]).filename().string(), *treeOf(files[i], rules)))
+      return false;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!drawAt(i, names[i], grow(species(names[i]), run.seed))) return false;
   writePng(sheet_file, sheet.width, sheet.height, sheet.colours);
+  return true;
 }
 
 }  // namespace sunfleck::apps

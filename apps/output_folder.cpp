@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "core/require.hpp"
+#include "core/whole_file.hpp"
 
 namespace sunfleck::apps {
 namespace fs = std::filesystem;
@@ -14,9 +15,11 @@ OutputFolder::OutputFolder(const fs::path& folder) {
     made_.push_back(above);
   fs::create_directories(folder, failure);
   if (failure) throw InvalidInput(folder.string() + ": cannot be made: " + failure.message());
+  removeWhenEmpty(made_);
 }
 
 OutputFolder::~OutputFolder() {
+  removeWhenEmpty({});
   std::error_code not_empty;
   for (const fs::path& folder : made_) fs::remove(folder, not_empty);
 }

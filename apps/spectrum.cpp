@@ -43,6 +43,8 @@ float shareAt(const CsvRow& row, std::string_view header, std::size_t column) {
 
 Spectrum readSpectrum(const std::string& file, const Scene& scene, int band) {
   const std::string_view header = headerOf(file);
+  for (const TreeKind& kind : scene.kinds)
+    if (kind.maps) throw InvalidInput("--spectrum: must be for scenes whose leaves are alike everywhere, without maps");
   Spectrum spectrum;
   for (const CsvRow& row : readCsvRows(file, header)) {
     const std::string& name = row.fields[0];

@@ -16,7 +16,7 @@ struct Spectrum {
 
 // Reads a CSV file name,leaf_reflectance,leaf_transmittance[,wood_reflectance[,ground_albedo]], a row for each band:
 // the optics of all kinds of trees. What it does not tell is that of the scene in `band`. Throws InvalidInput naming
-// file, line and column.
+// file, line and column, and on a scene with leaf maps, which know no other bands than the scene's.
 Spectrum readSpectrum(const std::string& file, const Scene& scene, int band);
 
 // CSV of the shares of the light of each band and their standard errors.

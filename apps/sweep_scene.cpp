@@ -82,11 +82,9 @@ Scene SweepScene::sceneOf(const SweepTask& task, const SweepOptics& optics) cons
   if (task.sun.zenith_deg) scene.suns.front().zenith = radiansOf(*task.sun.zenith_deg);
   if (task.sun.azimuth_deg) scene.suns.front().azimuth = radiansOf(*task.sun.azimuth_deg);
   for (TreeKind& kind : scene.kinds) {
-    if (optics.leaf) {  // alike at all places and on both sides
-      kind.textures = {};
-      kind.maps = nullptr;
-      kind.leaf[static_cast<std::size_t>(optics.band)] = *optics.leaf;
-    }
+    if (optics.leaf && kind.maps)
+      throw InvalidInput(name_ + ": leaves with maps: must be without other optics of leaves in the sweep");
+    if (optics.leaf) kind.leaf[static_cast<std::size_t>(optics.band)] = *optics.leaf;
     if (optics.wood_reflectance) kind.wood_reflectance[optics.band] = *optics.wood_reflectance;
   }
   if (optics.ground_albedo) scene.ground_albedo[optics.band] = *optics.ground_albedo;

@@ -72,6 +72,7 @@ void addTraceOptions(CLI::App& command, TraceOptions& options) {
           ->excludes(all_bands)
           ->excludes("--picture")
           ->excludes("--only-picture");
+  for (const char* other : {"--albedo", "--leaf-species", "--leaf-prospect", "--leaf-bands"}) spectrum->excludes(other);
   command.add_option("--spectrum-out", options.spectrum_out, "CSV to write: the shares of the light of each of them")
       ->needs(spectrum);
   addBrfOptions(command, options.brf);

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
+#include "leaves/leaf_map_fit.hpp"
+#include "leaves/leaf_textures.hpp"
 #include "leaves/light_bands.hpp"
 #include "leaves/prospect.hpp"
 #include "leaves/prospect_fit.hpp"
@@ -57,6 +60,41 @@ void slab(benchmark::State& state) {
   if (!(std::abs(all - 1.) < 1e-10)) state.SkipWithError("energy is lost");
 }
 BENCHMARK(slab)->Unit(benchmark::kMicrosecond);
+
+// What each of 720 x 540 places and each side does, as a panel's edit asks for it.
+void maps(benchmark::State& state) {
+  auto texture = std::make_shared<LeafTexture>();
+  texture->width = 720;
+  texture->height = 540;
+  for (int i = 0; i < 720 * 540; ++i) {
+    texture->colour.emplace_back(0.5f + 0.4f * std::sin(0.01f * static_cast<float>(i)));
+    texture->alpha.push_back(0.5f + 0.5f * std::sin(0.003f * static_cast<float>(i)));
+  }
+  auto lower = std::make_shared<LeafTexture>(*texture);
+  const LeafDescription leaf =
+      LeafByTissue{.absorption = {1.5f, 0.4f, 5.f}, .scattering = glm::vec3(10.f), .thickness = 0.2};
+  const BandOptics even = bandOptics(leaf, {}, {});
+  const LeafTextures textures{.upper = {.detail = texture, .gloss = lower},
+                              .lower = {.detail = lower, .gloss = texture}};
+  std::shared_ptr<const LeafMaps> made;
+  for (auto _ : state) made = leafMaps(leaf, even, textures);
+  if (made->places.size() != 720 * 540) state.SkipWithError("places are missing");
+}
+BENCHMARK(maps)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// Tissue, gamma and delta behind 720 x 540 places.
+void mapsFit(benchmark::State& state) {
+  MeasuredLeafMaps measured;
+  for (int i = 0; i < 720 * 540; ++i) {
+    const float dark = std::sin(0.01f * static_cast<float>(i)), thin = std::sin(0.003f * static_cast<float>(i));
+    measured.reflectance.push_back((1.f + 0.3f * dark) * glm::vec3(0.1f, 0.2f, 0.06f));
+    measured.transmittance.push_back((1.f + 0.3f * thin) * glm::vec3(0.08f, 0.2f, 0.03f));
+  }
+  LeafMapFit found;
+  for (auto _ : state) found = fitLeafMaps(measured, 0.2);
+  if (!found.converged) state.SkipWithError("the tissue is not found");
+}
+BENCHMARK(mapsFit)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // 180 x 135 places, no two alike, on all threads: 16 of these are the map of a leaf of Wang et al.
 void tissueMap(benchmark::State& state) {

@@ -114,18 +114,20 @@ void validate(const LeafMaps& maps, const std::string& what) {
   for (const float roughness : maps.roughnesses)
     require(roughness >= kLeastGlossRoughness && roughness <= 1.f, what + ": gloss_roughness", roughness,
             "in [0.05, 1]");
+  // Made once: there may be millions of places.
+  const std::string roughness = what + ": number of a roughness", gloss = what + ": gloss",
+                    reflectance = what + ": reflectance", transmittance = what + ": transmittance",
+                    sum = what + ": reflectance + transmittance";
   for (const LeafPlace& place : maps.places)
     for (const LeafFace& face : place.faces) {
-      require(face.roughness < maps.roughnesses.size(), what + ": number of a roughness", face.roughness,
-              "below the number of roughnesses");
+      require(face.roughness < maps.roughnesses.size(), roughness, face.roughness, "below the number of roughnesses");
       for (int band = 0; band < kBands; ++band) {
-        require(face.gloss[band] >= 0.f && face.gloss[band] <= 1.f, what + ": gloss", face.gloss[band], "in [0, 1]");
-        require(face.reflectance[band] >= 0.f, what + ": reflectance", face.reflectance[band], "at least 0");
-        require(place.transmittance[band] >= 0.f, what + ": transmittance", place.transmittance[band], "at least 0");
+        require(face.gloss[band] >= 0.f && face.gloss[band] <= 1.f, gloss, face.gloss[band], "in [0, 1]");
+        require(face.reflectance[band] >= 0.f, reflectance, face.reflectance[band], "at least 0");
+        require(place.transmittance[band] >= 0.f, transmittance, place.transmittance[band], "at least 0");
         // Sums of shares that were rounded to floats.
-        require(face.reflectance[band] + place.transmittance[band] <= 1.f + 1e-6f,
-                what + ": reflectance + transmittance", face.reflectance[band] + place.transmittance[band],
-                "at most 1");
+        require(face.reflectance[band] + place.transmittance[band] <= 1.f + 1e-6f, sum,
+                face.reflectance[band] + place.transmittance[band], "at most 1");
       }
     }
 }

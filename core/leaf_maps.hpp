@@ -31,7 +31,8 @@ struct LeafPlace {
 };
 
 // Leaves that are not alike at all places or on both sides: what every place of a leaf's images does to light. All
-// leaves of a tree show the same images, each triangle a part of them (LeafPatch).
+// leaves of a tree show the same images, each triangle a part of them (LeafPatch); one whose part is not known shows
+// the mean of both sides and all places, unless there is one place alone.
 struct LeafMaps {
   int width = 1, height = 1;             // [place], 1 .. kMostMapWidth
   std::vector<LeafPlace> places;         // rows from top to bottom

@@ -49,6 +49,10 @@ std::array<char, 4096> unfinished{};
 std::atomic<bool> is_unfinished{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+// Names of folders, one after the other, each ended by a zero, and a zero at the end.
+std::array<char, 4096> folders{};
+std::atomic<bool> has_folders{false};
+
 // Removes the temporary file unless it has been renamed away.
 struct Temporary {
   fs::path path;
@@ -69,8 +73,23 @@ struct Temporary {
 
 }  // namespace
 
+void removeWhenEmpty(std::span<const fs::path> made) {
+  has_folders = false;
+  char* at = folders.data();
+  for (const fs::path& folder : made) {
+    const std::string name = fs::absolute(folder).native();
+    if (name.size() + 2 > static_cast<std::size_t>(folders.data() + folders.size() - at)) break;
+    at = std::copy(name.begin(), name.end(), at);
+    *at++ = '\0';
+  }
+  *at = '\0';
+  has_folders = !made.empty();
+}
+
 void removeUnfinished() noexcept {
   if (is_unfinished) unlink(unfinished.data());
+  if (!has_folders) return;
+  for (const char* name = folders.data(); *name != '\0'; name += std::strlen(name) + 1) rmdir(name);
 }
 
 void requireWritable(const fs::path& path) {

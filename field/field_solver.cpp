@@ -519,7 +519,8 @@ std::vector<FieldSolution> solveField(const FieldGeometry& geometry, std::span<c
                                       double recollision, const SolverEffort& effort, const Progress& progress) {
   if (!(recollision < 1. - 1e-6))
     throw InvalidInput(
-        "leaf albedo = 1: must be below 1 where light can neither leave nor be absorbed: there is no steady state");
+        "leaf albedo within 1e-6 of 1: must be less where light can neither leave nor be absorbed: there is no steady "
+        "state");
   std::vector<FieldSolution> solutions;
   for (std::size_t first = 0; first < problems.size(); first += kLanes) {
     Solve solve(geometry, problems.subspan(first, std::min(kLanes, problems.size() - first)), recollision, effort);

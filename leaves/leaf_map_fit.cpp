@@ -169,14 +169,38 @@ class MapFit {
     scattering_ *= wider;
     bool near = std::abs(wider - 1.) < kNearEnough;
     const TissueBands before = tissue.at(mean_thickness_), even = tissue.at(mean);
+    const Bands off = withoutThickness(meansOff(sums), tissue, mean);
     for (std::size_t band = 0; band < kBands; ++band) {
-      const double gamma = sums.gamma[band] / count, off = sums.transmittance[band] / count - mean_[band];
-      near = near && std::abs(gamma - 1.) < kNearEnough && std::abs(off) < kNearEnough;
+      const double gamma = sums.gamma[band] / count;
+      near = near && std::abs(gamma - 1.) < kNearEnough && std::abs(off[band]) < kNearEnough;
       // By differences: tissueOf() and the table have not the same directions.
       target_[band].reflectance += even.reflectance[band] * gamma - before.reflectance[band];
-      target_[band].transmittance += even.transmittance[band] - off - before.transmittance[band];
+      target_[band].transmittance += even.transmittance[band] - off[band] - before.transmittance[band];
     }
     return near;
+  }
+
+  Bands meansOff(const Sums& sums) const {
+    Bands off;
+    for (std::size_t band = 0; band < kBands; ++band)
+      off[band] = sums.transmittance[band] / static_cast<double>(places_.size()) - mean_[band];
+    return off;
+  }
+
+  // What no change of all thicknesses would explain: that part is delta's, by least squares, and noise keeps a little
+  // of it.
+  static Bands withoutThickness(Bands off, const TissueByThickness& tissue, double mean) {
+    const double apart = 1e-2 * mean;
+    const Bands thinner = tissue.at(mean - apart).transmittance, thicker = tissue.at(mean + apart).transmittance;
+    double along = 0., slopes = 0.;
+    for (std::size_t band = 0; band < kBands; ++band) {
+      const double slope = thicker[band] - thinner[band];
+      along += slope * off[band];
+      slopes += slope * slope;
+    }
+    for (std::size_t band = 0; band < kBands && slopes > 0.; ++band)
+      off[band] -= (thicker[band] - thinner[band]) * along / slopes;
+    return off;
   }
 
   Sums search(const TissueByThickness& tissue) {

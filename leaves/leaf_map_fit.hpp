@@ -32,9 +32,9 @@ struct LeafMapFit {
 
 // (L12) The tissue of a leaf of the mean thickness h [mm], above 0 to 500, with gamma and delta of every place: delta
 // by least squares of transmittance over the bands, gamma from what is reflected then, constants so that gamma is 1 in
-// the mean and transmittance as measured in the mean; in turns until no mean moves by 1e-6. The same to the bit for any
-// number of threads. Throws InvalidInput on values out of range, none on the leaf, and a leaf that reflects nothing or
-// lets nothing through in a band. Some 2 s of two cores for 720 x 540 places.
+// the mean and transmittance, but for what delta explains, as measured in the mean; in turns until no mean is off by
+// 1e-6. The same to the bit for any number of threads. Throws InvalidInput on values out of range, none on the leaf,
+// and a leaf that reflects nothing or lets nothing through in a band. Some 2 s of two cores for 720 x 540 places.
 LeafMapFit fitLeafMaps(const MeasuredLeafMaps& measured, double thickness);
 
 }  // namespace sunfleck

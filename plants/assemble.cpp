@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -14,6 +15,7 @@
 #include "core/require.hpp"
 #include "plants/detail/cut_cards.hpp"
 #include "plants/detail/leaf_grouping.hpp"
+#include "plants/detail/shared_patches.hpp"
 
 namespace sunfleck::detail {
 namespace {
@@ -74,12 +76,17 @@ ImageCorners cornersOf(const NamedTriangles& faces, std::size_t triangle) {
 }
 
 // To a leaf triangle just added.
-void addPatch(TreeMesh& mesh, const NamedTriangles& faces, std::size_t triangle, std::uint32_t mask) {
+void addPatch(TreeMesh& mesh, SharedPatches& patches, const NamedTriangles& faces, std::size_t triangle,
+              std::uint32_t mask, const std::string& source) {
   if (faces.texture_corners.empty() && mesh.masks.empty()) return;
   const ImageCorners corners = cornersOf(faces, triangle);
+  const bool all = std::ranges::none_of(corners, [](const glm::vec2& c) { return std::isnan(c.x + c.y); });
+  if (mask != LeafPatch::kNoMask && !all)
+    require(false,
+            source + ": leaf triangle " + std::to_string(mesh.patch_of_triangle.size() + 1) + ": texture coordinates",
+            "(missing)", "there, as its material has a mask (or --cards whole)");
   const bool known = mask != LeafPatch::kNoMask || isUsable(corners);
-  mesh.patch_of_triangle.push_back(known ? static_cast<std::uint32_t>(mesh.patches.size()) : TreeMesh::kNoPatch);
-  if (known) mesh.patches.push_back({corners, mask});
+  mesh.patch_of_triangle.push_back(known ? patches.numberOf({corners, mask}) : TreeMesh::kNoPatch);
 }
 
 void toMetresZUp(std::vector<glm::vec3>& vertices, const ImportRules& rules, bool format_y_up) {
@@ -111,6 +118,7 @@ ImportedTree assemble(NamedTriangles faces, const Verdict& verdict, const Import
   for (std::size_t part = 0; part < of_part.size(); ++part)
     if (faces.parts[part].opacity && verdict.kinds[part] == Kind::leaf)
       of_part[part] = treatments.of(*faces.parts[part].opacity);
+  SharedPatches patches(tree.mesh.patches);
   std::size_t left_out = 0;
   std::array<std::size_t, 2> count{};
   for (const std::uint32_t part : faces.part_of_triangle) ++count[verdict.kinds[part] == Kind::leaf ? 0 : 1];
@@ -124,7 +132,7 @@ ImportedTree assemble(NamedTriangles faces, const Verdict& verdict, const Import
       ++left_out;
     } else {
       tree.mesh.leaf_triangles.push_back(faces.triangles[i]);
-      addPatch(tree.mesh, faces, i, of_part[part].mask);
+      addPatch(tree.mesh, patches, faces, i, of_part[part].mask, source);
     }
   }
   if (left_out > 0) tree.how += "; left out " + std::to_string(left_out) + " leaf triangles of transparent materials";

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/require.hpp"
+#include "plants/detail/mask_outline.hpp"
 #include "plants/detail/mask_triangles.hpp"
 
 namespace sunfleck::detail {
@@ -16,10 +17,6 @@ namespace {
 constexpr std::size_t kMostTriangles = 50'000'000;
 
 using Convex = std::vector<glm::dvec2>;  // counter-clockwise
-
-double turnOf(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
 
 // The part of a polygon on the left of the line from a to b (Sutherland & Hodgman 1974).
 Convex leftOf(const glm::dvec2& a, const glm::dvec2& b, const Convex& polygon) {

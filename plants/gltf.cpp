@@ -25,7 +25,8 @@ constexpr std::size_t kMostKinds = 1000;
 // One mesh and how it is turned and scaled, wherever it stands by a move and a turn about the vertical.
 struct Posture {
   int mesh, node;
-  glm::dmat3 linear;  // of the model in the file's axes
+  glm::dmat3 linear;               // of the model in the file's axes
+  std::optional<glm::dmat3> back;  // from z up to the model; none where it is flat
   std::vector<Placement> trees;
 };
 
@@ -158,11 +159,14 @@ class GltfReader {
     }
   }
 
-  // The turn about the vertical [rad] that takes one posture to another, z up.
-  static std::optional<double> turnBetween(const glm::dmat3& from, const glm::dmat3& to) {
+  static std::optional<glm::dmat3> inverseOf(const glm::dmat3& linear) {
+    if (!(std::abs(glm::determinant(linear)) > 1e-30)) return std::nullopt;
+    return glm::inverse(linear);
+  }
+
+  // The turn about the vertical [rad] that a transform is, z up.
+  static std::optional<double> turnOf(const glm::dmat3& between) {
     constexpr double kSame = 1e-5;
-    if (!(std::abs(glm::determinant(from)) > 1e-30)) return std::nullopt;
-    const glm::dmat3 between = to * glm::inverse(from);
     const double angle = std::atan2(between[0].y, between[0].x);
     const glm::dmat3 turn{
         {std::cos(angle), std::sin(angle), 0.}, {-std::sin(angle), std::cos(angle), 0.}, {0., 0., 1.}};
@@ -187,14 +191,15 @@ class GltfReader {
       std::vector<std::size_t>& known = of_mesh[placed.mesh];
       std::optional<double> turn;
       auto posture = std::ranges::find_if(known, [&](std::size_t i) {
-        turn = turnBetween(z_up * postures[i].linear * back, linear);
+        if (postures[i].back) turn = turnOf(linear * *postures[i].back);
         return turn.has_value();
       });
       if (posture == known.end()) {
-        turn = turnBetween(glm::dmat3(1.), linear);
+        turn = turnOf(linear);
         known.push_back(postures.size());
         posture = known.end() - 1;
-        postures.push_back({placed.mesh, placed.node, turn ? glm::dmat3(1.) : glm::dmat3(placed.to_world), {}});
+        const glm::dmat3 of_model = turn ? glm::dmat3(1.) : glm::dmat3(placed.to_world);
+        postures.push_back({placed.mesh, placed.node, of_model, inverseOf(z_up * of_model * back), {}});
         if (known.size() > std::max<std::size_t>(1, count[placed.mesh] / 2)) return std::nullopt;
         if (postures.size() > kMostKinds) return std::nullopt;
       }

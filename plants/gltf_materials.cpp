@@ -41,6 +41,10 @@ class MaterialReader {
     const std::vector<double>& base = material.pbrMetallicRoughness.baseColorFactor;
     const tinygltf::TextureInfo& texture = material.pbrMetallicRoughness.baseColorTexture;
     const bool has_colour = texture.index < 0 && base.size() >= 3;
+    if (texture.index >= 0) {
+      made.texture_coordinates = texture.texCoord;
+      setTransform(made, texture);
+    }
     if (has_colour) made.colour = glm::vec3(base[0], base[1], base[2]);
     if (has_colour) made.leaf = leafOf(material, *made.colour);
     if (material.alphaMode == "MASK" || material.alphaMode == "BLEND") {
@@ -50,8 +54,6 @@ class MaterialReader {
       opacity.by_alpha = true;
       if (texture.index >= 0) {
         setImage(opacity, texture.index, material.name);
-        made.texture_coordinates = texture.texCoord;
-        setTransform(made, texture);
       }
       made.opacity = opacity;
     }
@@ -60,7 +62,7 @@ class MaterialReader {
 
  private:
   // The share `factor` of what is not specular passes, in its own colour; the rest is reflected in the base colour.
-  static std::optional<FileLeafColours> leafOf(const tinygltf::Material& material, const glm::vec3& base) {
+  std::optional<FileLeafColours> leafOf(const tinygltf::Material& material, const glm::vec3& base) const {
     const auto found = material.extensions.find("KHR_materials_diffuse_transmission");
     if (found == material.extensions.end() || !found->second.IsObject()) return std::nullopt;
     const tinygltf::Value& extension = found->second;
@@ -69,6 +71,8 @@ class MaterialReader {
     const auto share = static_cast<float>(extension.Has("diffuseTransmissionFactor")
                                               ? extension.Get("diffuseTransmissionFactor").GetNumberAsDouble()
                                               : 0.);
+    require(share >= 0.f && share <= 1.f,
+            source_ + ": material \"" + shown(material.name) + "\": diffuseTransmissionFactor", share, "in [0, 1]");
     glm::vec3 colour(1.f);
     if (const tinygltf::Value& list = extension.Get("diffuseTransmissionColorFactor");
         list.IsArray() && list.ArrayLen() == 3)

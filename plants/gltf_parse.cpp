@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "core/require.hpp"
@@ -41,6 +42,74 @@ void checkJson(std::string_view text, const std::string& source) {
   require(values <= kMostValues, source + ": number of values in its JSON", values, "at most 3000000");
 }
 
+// Goes through the JSON for what the library would take in silence: values of another type where numbers must be, which
+// count as absent to it. What is not glTF's own, below "extras", may be anything.
+class NumberCheck : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  explicit NumberCheck(const std::string& source) : source_(source) {}
+
+  bool null() override { return other("null"); }
+  bool boolean(bool value) override { return other(value ? "true" : "false"); }
+  bool number_integer(std::int64_t) override { return true; }
+  bool number_unsigned(std::uint64_t) override { return true; }
+  bool number_float(double, const std::string&) override { return true; }
+  bool string(std::string& value) override { return other('"' + shown(value) + '"'); }
+  bool binary(nlohmann::json::binary_t&) override { return true; }
+  bool start_object(std::size_t) override {
+    other("{ ... }");
+    return start(false);
+  }
+  bool key(std::string& name) override {
+    key_ = name;
+    return true;
+  }
+  bool end_object() override { return end(); }
+  bool start_array(std::size_t) override { return start(true); }
+  bool end_array() override { return end(); }
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception&) override {
+    require(false, source_ + ": first byte of its JSON that is out of place", position, "none: it is not glTF");
+    return false;
+  }
+
+ private:
+  struct Level {
+    std::string key;
+    bool is_array, is_free;
+  };
+
+  const std::string& name() const { return !levels_.empty() && levels_.back().is_array ? levels_.back().key : key_; }
+  bool isFree() const { return !levels_.empty() && levels_.back().is_free; }
+
+  bool other(const std::string& value) const {
+    constexpr std::array numbers{"scale",
+                                 "translation",
+                                 "rotation",
+                                 "matrix",
+                                 "baseColorFactor",
+                                 "alphaCutoff",
+                                 "diffuseTransmissionFactor",
+                                 "diffuseTransmissionColorFactor"};
+    if (!isFree() && std::ranges::find(numbers, name()) != numbers.end())
+      require(false, source_ + ": " + name(), value, "of numbers");
+    return true;
+  }
+  bool start(bool is_array) {
+    const bool is_free = isFree() || name() == "extras";
+    levels_.push_back({is_array ? name() : "", is_array, is_free});
+    key_.clear();
+    return true;
+  }
+  bool end() {
+    levels_.pop_back();
+    key_.clear();
+    return true;
+  }
+
+  const std::string& source_;
+  std::vector<Level> levels_;
+  std::string key_;
+};
+
 // Of the files beside a .gltf, images are read when they are asked for.
 bool isBuffer(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -68,7 +137,10 @@ std::string_view jsonOf(const std::string& bytes, const std::string& source) {
 
 tinygltf::Model parseGltf(const std::filesystem::path& path, const std::string& bytes, const std::string& source) {
   const bool binary = bytes.starts_with("glTF");
-  checkJson(binary ? jsonOf(bytes, source) : std::string_view(bytes), source);
+  const std::string_view json = binary ? jsonOf(bytes, source) : std::string_view(bytes);
+  checkJson(json, source);
+  NumberCheck numbers(source);
+  nlohmann::json::sax_parse(json, &numbers);
   require(bytes.size() < (std::size_t{1} << 31), source + ": size [byte]", bytes.size(), "below 2147483648");
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(
@@ -99,13 +171,14 @@ tinygltf::Model parseGltf(const std::filesystem::path& path, const std::string& 
                   : loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, folder);
   } catch (const InvalidInput&) {
     throw;
-  } catch (const std::exception& e) {  // of the JSON library, on values of another type than expected
-    error = e.what();
+  } catch (const std::exception&) {  // of the JSON library
+    throw InvalidInput(source + ": has a value of another type than glTF's: must be glTF 2.0");
   }
   if (!done) {
     std::replace(error.begin(), error.end(), '\n', ' ');
     throw InvalidInput(source + ": cannot be read as glTF: " + shown(error));
   }
+  require(model.asset.version.starts_with("2."), source + ": asset's version", shown(model.asset.version), "2.0");
   return model;
 }
 

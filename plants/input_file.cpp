@@ -34,9 +34,24 @@ std::string readWhole(const fs::path& path) {
 
 std::string shown(std::string_view text) {
   constexpr std::size_t kMost = 200;
-  std::string clean(text.substr(0, kMost));
-  std::replace_if(
-      clean.begin(), clean.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  std::string clean;
+  for (std::size_t i = 0; i < std::min(text.size(), kMost);) {
+    const auto first = static_cast<unsigned char>(text[i]);
+    const std::size_t length = first < 0x80                    ? 1
+                               : first >= 0xc2 && first < 0xe0 ? 2
+                               : first >= 0xe0 && first < 0xf0 ? 3
+                               : first >= 0xf0 && first < 0xf5 ? 4
+                                                               : 0;
+    const std::string_view character = text.substr(i, length);
+    const bool whole = length > 0 && character.size() == length &&
+                       std::ranges::all_of(character.substr(1), [](unsigned char c) { return (c & 0xc0) == 0x80; });
+    const bool printed = whole && first >= 0x20 && first != 0x7f;
+    if (printed)
+      clean += character;
+    else
+      clean += '?';
+    i += whole ? length : 1;
+  }
   return text.size() > kMost ? clean + "..." : clean;
 }
 

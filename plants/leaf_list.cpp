@@ -27,6 +27,10 @@ class LeafListReader {
     for (std::size_t i = 0; i < kCorners; ++i)
       corners_[i] = {widening * std::cos(kTurn * static_cast<double>(i)),
                      widening * std::sin(kTurn * static_cast<double>(i))};
+    // The image's edges touch the polygon.
+    const auto inImage = [&](std::size_t i) { return glm::vec2(0.5 + 0.5 / widening * corners_[i]); };
+    for (std::size_t i = 1; i + 1 < kCorners; ++i)
+      mesh_.patches.push_back({.corners = {inImage(0), inImage(i), inImage(i + 1)}});
   }
 
   TreeMesh read(std::string_view text) {
@@ -80,7 +84,10 @@ class LeafListReader {
     for (const glm::dvec2& corner : corners_)
       mesh_.vertices.emplace_back(centre +
                                   radius * (corner.x * glm::dvec3(axes.right) + corner.y * glm::dvec3(axes.up)));
-    for (std::uint32_t i = 1; i + 1 < kCorners; ++i) mesh_.leaf_triangles.push_back({first, first + i, first + i + 1});
+    for (std::uint32_t i = 1; i + 1 < kCorners; ++i) {
+      mesh_.leaf_triangles.push_back({first, first + i, first + i + 1});
+      mesh_.patch_of_triangle.push_back(i - 1);
+    }
   }
 
   const std::string& source_;

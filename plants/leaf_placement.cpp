@@ -58,10 +58,12 @@ void addLeaf(const WeberPenn& parameters, const LeafTemplates& templates, const 
   for (const glm::dvec3& v : shape.vertices)
     mesh.vertices.emplace_back(base + v.y * length + v.x * half_width + v.z * off);
   bool any = false;
-  for (const glm::uvec3& t : shape.triangles) {
-    if (!(triangleArea(mesh, first + t) > 0.)) continue;
-    mesh.leaf_triangles.push_back(first + t);
+  for (std::uint32_t i = 0; i < shape.triangles.size(); ++i) {
+    const glm::uvec3 t = first + shape.triangles[i];
+    if (!(triangleArea(mesh, t) > 0.)) continue;
+    mesh.leaf_triangles.push_back(t);
     mesh.leaf_of_triangle.push_back(mesh.leaf_count);
+    mesh.patch_of_triangle.push_back(blossom || !isUsable(shape.corners[i]) ? TreeMesh::kNoPatch : i);
     any = true;
   }
   mesh.leaf_count += any;
@@ -72,6 +74,12 @@ void addLeaf(const WeberPenn& parameters, const LeafTemplates& templates, const 
 LeafTemplates::LeafTemplates(const WeberPenn& p)
     : leaf(leafTemplate(p.leaf_shape, double{p.leaf_scale_x}, double{p.leaf_fold}, double{p.leaf_curl})),
       blossom(leafTemplate(p.blossom_shape, 1., double{p.leaf_fold}, double{p.leaf_curl})) {}
+
+std::vector<LeafPatch> LeafTemplates::patches() const {
+  std::vector<LeafPatch> all;
+  for (const ImageCorners& corners : leaf.corners) all.push_back({.corners = corners});
+  return all;
+}
 
 void placeLeaves(const WeberPenn& parameters, const LeafTemplates& templates, const Bud& twig, const Strand& strand,
                  int count, Random& random, TreeMesh& mesh) {

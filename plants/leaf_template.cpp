@@ -107,16 +107,37 @@ class Midrib {
   std::vector<glm::dvec2> starts_{glm::dvec2(0.)};
 };
 
+// Of a leaf that is still flat. Lobes may reach behind the base.
+std::vector<ImageCorners> cornersInImages(const LeafTemplate& flat) {
+  double low = 0., high = 1.;
+  for (const glm::dvec3& v : flat.vertices) {
+    low = std::min(low, v.y);
+    high = std::max(high, v.y);
+  }
+  std::vector<ImageCorners> all;
+  for (const glm::uvec3& t : flat.triangles) {
+    ImageCorners& corners = all.emplace_back();
+    for (int c = 0; c < 3; ++c) {
+      const glm::dvec3& v = flat.vertices[t[c]];
+      corners[static_cast<std::size_t>(c)] = glm::dvec2(0.5 * (1. - v.x), (v.y - low) / (high - low));
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 LeafTemplate leafTemplate(LeafShape shape, double width, double fold, double curl) {
-  if (shape == LeafShape::rectangle && fold == 0. && curl == 0.)
-    return {.vertices = {{-1., 0., 0.}, {1., 0., 0.}, {1., 1., 0.}, {-1., 1., 0.}},
-            .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  LeafTemplate leaf;
+  if (shape == LeafShape::rectangle && fold == 0. && curl == 0.) {
+    leaf.vertices = {{-1., 0., 0.}, {1., 0., 0.}, {1., 1., 0.}, {-1., 1., 0.}};
+    leaf.triangles = {{0, 2, 1}, {0, 3, 2}};
+    leaf.corners = cornersInImages(leaf);
+    return leaf;
+  }
   const Midrib midrib(radians(curl));
   Half half = halfOf(shape);
   for (int joint = 1; joint < midrib.pieces(); ++joint) cutAcross(half, double(joint) / midrib.pieces());
-  LeafTemplate leaf;
   std::vector<std::uint32_t> mirrored;  // of each point of the right half
   for (const glm::dvec2& p : half.points) leaf.vertices.emplace_back(p.x, p.y, 0.);
   for (std::uint32_t i = 0; i < half.points.size(); ++i) {
@@ -124,8 +145,9 @@ LeafTemplate leafTemplate(LeafShape shape, double width, double fold, double cur
     mirrored.push_back(p.x == 0. ? i : static_cast<std::uint32_t>(leaf.vertices.size()));
     if (p.x != 0.) leaf.vertices.emplace_back(-p.x, p.y, 0.);
   }
-  leaf.triangles = half.triangles;
-  for (const glm::uvec3& t : half.triangles) leaf.triangles.push_back({mirrored[t.x], mirrored[t.z], mirrored[t.y]});
+  for (const glm::uvec3& t : half.triangles) leaf.triangles.push_back({t.x, t.z, t.y});
+  for (const glm::uvec3& t : half.triangles) leaf.triangles.push_back({mirrored[t.x], mirrored[t.y], mirrored[t.z]});
+  leaf.corners = cornersInImages(leaf);
   const double lift = radians(0.5 * fold);
   for (glm::dvec3& v : leaf.vertices) {
     const double height = std::abs(v.x) * 0.5 * width * portable::sine(lift);

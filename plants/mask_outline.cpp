@@ -120,15 +120,6 @@ bool crosses(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, cons
   return of_c * of_d <= 0. && of_a * of_b <= 0.;
 }
 
-bool inside(const std::array<glm::dvec2, 5>& polygon, const glm::dvec2& p) {
-  bool odd = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) odd = !odd;
-  }
-  return odd;
-}
-
 // All outlines at once, so that none comes to cross itself or another.
 class Simplifier {
  public:
@@ -226,7 +217,7 @@ class Simplifier {
         // The neighbours meet the way at A and at D in any case.
         const bool meets =
             (end != a && crosses(swept[0], corner, from, to)) || (i != d && crosses(corner, swept[3], from, to));
-        const bool between = i != d && inside(swept, from);
+        const bool between = i != d && contains(swept, from);
         if (meets || between) {
           free = false;
           return;
@@ -244,6 +235,15 @@ class Simplifier {
 };
 
 }  // namespace
+
+bool contains(std::span<const glm::dvec2> outline, const glm::dvec2& p) {
+  bool odd = false;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) odd = !odd;
+  }
+  return odd;
+}
 
 double signedArea(const Outline& outline) {
   double twice = 0.;

@@ -16,21 +16,8 @@ constexpr std::size_t kMostCorners = 3000;          // of a mask; cutting ears t
 constexpr std::size_t kMostPixelCorners = 500'000;  // of its outlines before they are simplified: a second's work
 constexpr double kMostDropped = 0.009;              // area of specks less that of holes, over that of leaf
 
-double turnOf(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
 bool within(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& p) {
   return turnOf(a, b, p) >= 0. && turnOf(b, c, p) >= 0. && turnOf(c, a, p) >= 0.;
-}
-
-bool contains(const Outline& outline, const glm::dvec2& p) {
-  bool inside = false;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
-    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
-  }
-  return inside;
 }
 
 // An outline with its holes as one line: a bridge leads to each hole and back (Eberly, "Triangulation by Ear

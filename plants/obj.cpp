@@ -18,7 +18,9 @@ ImportedTree readObj(const std::filesystem::path& path, std::string_view text, c
       part.opacity = &known->second;
   }
   const Verdict verdict = tellApart(file.faces.parts, rules, source, materials.missing);
-  return assemble(std::move(file.faces), verdict, rules, read_image, source);
+  ImportedTree tree = assemble(std::move(file.faces), verdict, rules, read_image, source);
+  if (!materials.missing.empty()) tree.how += "; " + materials.missing;
+  return tree;
 }
 
 }  // namespace sunfleck::detail

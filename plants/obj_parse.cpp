@@ -52,7 +52,7 @@ class ObjParser {
 
   ObjFile parse() {
     refuseZeroByte();
-    for (std::string_view left = text_; !left.empty();) readLine(nextLine(left));
+    for (std::string_view left = text_; !left.empty();) readLine(wholeLine(left));
     if (faces_ == 0) throw InvalidInput(source_ + ": has no faces, so no leaves");
     if (highest_index_ > vertexCount()) {
       line_ = highest_line_;
@@ -111,6 +111,19 @@ class ObjParser {
     const bool both = left.substr(end).starts_with("\r\n");
     left.remove_prefix(std::min(left.size(), end + (both ? 2 : 1)));
     return line;
+  }
+
+  // A backslash at its end continues a line in the next one.
+  std::string_view wholeLine(std::string_view& left) {
+    const std::string_view line = nextLine(left);
+    if (!line.ends_with('\\') || line.starts_with('#')) return line;
+    std::string& joined = file_.joined.emplace_back(line);
+    while (joined.ends_with('\\') && !left.empty()) {
+      joined.back() = ' ';
+      joined += nextLine(left);
+    }
+    if (joined.ends_with('\\')) joined.pop_back();
+    return joined;
   }
 
   void readLine(std::string_view line) {

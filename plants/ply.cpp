@@ -11,6 +11,7 @@
 
 #include "core/require.hpp"
 #include "plants/detail/input_file.hpp"
+#include "plants/detail/shared_patches.hpp"
 #include "plants/detail/triangulate.hpp"
 
 namespace sunfleck::detail {
@@ -127,6 +128,7 @@ class PlyReader {
     }
     if (mesh_.leaf_triangles.empty() && mesh_.wood_triangles.empty())
       throw InvalidInput(source_ + ": has no faces, so no leaves");
+    if (!texture_.empty()) addPatches();
     return std::move(mesh_);
   }
 
@@ -148,12 +150,18 @@ class PlyReader {
     for (const auto& property : element.properties)
       for (std::size_t axis = 0; axis < 3; ++axis)
         if (property.name == std::string(1, "xyz"[axis]) && !property.count_type) found[axis] = true;
-    if (!found[0] || !found[1] || !found[2])
-      throw InvalidInput(source_ + ": the vertices of a PLY need properties x, y and z");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      require(found[axis], source_ + ": property " + "xyz"[axis] + " of the vertices", "(missing)",
+              "a number of each vertex");
+    const std::array<std::size_t, 2> of_texture = textureProperties(element);
+    const bool textured = of_texture[0] < element.properties.size();
     mesh_.vertices.reserve(mesh_.vertices.size() + element.count);
+    if (textured) texture_.resize(mesh_.vertices.size(), glm::vec2(std::numeric_limits<float>::quiet_NaN()));
     for (std::size_t i = 0; i < element.count; ++i) {
       glm::vec3 position(0.f);
-      for (const auto& property : element.properties) {
+      glm::vec2 in_image(std::numeric_limits<float>::quiet_NaN());
+      for (std::size_t k = 0; k < element.properties.size(); ++k) {
+        const auto& property = element.properties[k];
         if (property.count_type) {
           skipList(property, element.name, i);
           continue;
@@ -165,8 +173,39 @@ class PlyReader {
               require(false, values_.where(element.name, i) + " " + property.name, value, "a finite number");
             position[axis] = static_cast<float>(value);
           }
+        for (int axis = 0; axis < 2; ++axis)
+          if (k == of_texture[static_cast<std::size_t>(axis)] && std::abs(value) <= double{kMostImageRepeats})
+            in_image[axis] = static_cast<float>(value);
       }
       mesh_.vertices.push_back(position);
+      if (textured) texture_.push_back(in_image);
+    }
+  }
+
+  // Those that tell where a vertex lies in its image; beyond the last where there are none.
+  static std::array<std::size_t, 2> textureProperties(const PlyHeader::Element& element) {
+    const auto placeOf = [&](const char* name) {
+      return static_cast<std::size_t>(std::ranges::find_if(element.properties,
+                                                           [&](const PlyHeader::Property& property) {
+                                                             return property.name == name && !property.count_type;
+                                                           }) -
+                                      element.properties.begin());
+    };
+    constexpr std::array<std::array<const char*, 2>, 3> kNames{{{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}};
+    for (const auto& [first, second] : kNames) {
+      const std::array<std::size_t, 2> found{placeOf(first), placeOf(second)};
+      if (std::max(found[0], found[1]) < element.properties.size()) return found;
+    }
+    return {element.properties.size(), element.properties.size()};
+  }
+
+  void addPatches() {
+    texture_.resize(mesh_.vertices.size(), glm::vec2(std::numeric_limits<float>::quiet_NaN()));
+    while (mesh_.patch_of_triangle.size() < mesh_.leaf_triangles.size()) {
+      const glm::uvec3& t = mesh_.leaf_triangles[mesh_.patch_of_triangle.size()];
+      const ImageCorners corners{texture_[t.x], texture_[t.y], texture_[t.z]};
+      mesh_.patch_of_triangle.push_back(isUsable(corners) ? patches_.numberOf({.corners = corners})
+                                                          : TreeMesh::kNoPatch);
     }
   }
 
@@ -229,6 +268,8 @@ class PlyReader {
   PlyHeader header_;
   PlyValues values_;
   TreeMesh mesh_;
+  std::vector<glm::vec2> texture_;  // of each vertex, in its image; empty where none has any
+  SharedPatches patches_{mesh_.patches};
 };
 
 }  // namespace

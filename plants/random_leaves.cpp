@@ -27,12 +27,20 @@ void addLeaf(TreeMesh& mesh, glm::vec3 centre, float side, Random& random) {
     mesh.vertices.push_back(corner);
   mesh.leaf_triangles.push_back({first, first + 1, first + 2});
   mesh.leaf_triangles.push_back({first, first + 2, first + 3});
+  mesh.patch_of_triangle.insert(mesh.patch_of_triangle.end(), {0, 1});
+}
+
+// Of all leaves' two triangles.
+std::vector<LeafPatch> patchesOfSquare() {
+  const glm::vec2 low_left(0.f), low_right(1.f, 0.f), high_right(1.f), high_left(0.f, 1.f);
+  return {{.corners = {low_left, low_right, high_right}}, {.corners = {low_left, high_right, high_left}}};
 }
 
 }  // namespace
 
 TreeMesh randomLayer(const RandomLayer& layer, std::uint64_t seed) {
   TreeMesh mesh;
+  mesh.patches = patchesOfSquare();
   Random random(seed, 0);
   const float leaf_area = layer.leaf_side * layer.leaf_side;
   const int leaves = static_cast<int>(std::ceil(layer.leaf_area_index * layer.size.x * layer.size.y / leaf_area));
@@ -46,6 +54,7 @@ TreeMesh randomLayer(const RandomLayer& layer, std::uint64_t seed) {
 
 TreeMesh randomCrown(const RandomCrown& crown, std::uint64_t seed) {
   TreeMesh mesh;
+  mesh.patches = patchesOfSquare();
   Random random(seed, 0);
   for (int i = 0; i < crown.leaves; ++i) {
     const float radius = std::cbrt(random.uniform());

@@ -61,7 +61,9 @@ TreeSize sizeOf(const TreeMesh& mesh) {
 class Grower {
  public:
   Grower(const WeberPenn& parameters, std::uint64_t seed)
-      : parameters_(parameters), templates_(parameters), seed_(seed) {}
+      : parameters_(parameters), templates_(parameters), seed_(seed) {
+    mesh_.patches = templates_.patches();
+  }
 
   TreeMesh tree() {
     Random random = nextStream();
@@ -154,6 +156,7 @@ class Grower {
     mesh_.vertices.resize(all.vertices);
     mesh_.leaf_triangles.resize(all.leaf_triangles);
     mesh_.leaf_of_triangle.resize(all.leaf_triangles);
+    mesh_.patch_of_triangle.resize(all.leaf_triangles);
     mesh_.wood_triangles.resize(all.wood_triangles);
     mesh_.leaf_count = all.leaves;
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
@@ -163,8 +166,11 @@ class Grower {
         for (std::size_t k = 0; k < from.size(); ++k) to[at + k] = from[k] + shift;
       };
       const auto vertex = static_cast<std::uint32_t>(start.vertices);
-      std::copy(piece.vertices.begin(), piece.vertices.end(),
-                mesh_.vertices.begin() + static_cast<std::ptrdiff_t>(start.vertices));
+      const auto copy = [](const auto& from, auto& to, std::size_t at) {
+        std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
+      };
+      copy(piece.vertices, mesh_.vertices, start.vertices);
+      copy(piece.patch_of_triangle, mesh_.patch_of_triangle, start.leaf_triangles);
       put(piece.leaf_triangles, mesh_.leaf_triangles, start.leaf_triangles, vertex);
       put(piece.wood_triangles, mesh_.wood_triangles, start.wood_triangles, vertex);
       put(piece.leaf_of_triangle, mesh_.leaf_of_triangle, start.leaf_triangles, start.leaves);

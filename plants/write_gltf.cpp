@@ -11,6 +11,7 @@
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "plants/detail/display_colours.hpp"
+#include "plants/detail/textured_vertices.hpp"
 
 namespace sunfleck {
 namespace {
@@ -102,10 +103,11 @@ class GltfWriter {
   }
 
   int addMesh(const TreeMesh& mesh) {
+    const detail::TexturedVertices corners = detail::texturedVertices(mesh);
     std::vector<float> positions;
-    positions.reserve(3 * mesh.vertices.size());
+    positions.reserve(3 * corners.vertices.size());
     glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
-    for (const glm::vec3& v : mesh.vertices) {
+    for (const glm::vec3& v : corners.vertices) {
       const glm::vec3 y_up(v.x, v.z, -v.y);
       positions.insert(positions.end(), {y_up.x, y_up.y, y_up.z});
       low = glm::min(low, y_up);
@@ -116,12 +118,20 @@ class GltfWriter {
       model_.accessors.back().minValues.push_back(double{low[axis]});
       model_.accessors.back().maxValues.push_back(double{high[axis]});
     }
+    int texture = -1;
+    if (!corners.texture.empty()) {
+      std::vector<float> places;
+      places.reserve(2 * corners.texture.size());
+      for (const glm::vec2& at : corners.texture) places.insert(places.end(), {at.x, 1.f - at.y});  // v down
+      texture = addAccessor(places, TINYGLTF_TYPE_VEC2, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
+    }
     tinygltf::Mesh made;
     made.name = "tree";
     const auto addPart = [&](const std::vector<glm::uvec3>& triangles, int material) {
       if (triangles.empty()) return;
       tinygltf::Primitive part;
       part.attributes["POSITION"] = accessor;
+      if (material == 0 && texture >= 0) part.attributes["TEXCOORD_0"] = texture;
       part.material = material;
       part.mode = TINYGLTF_MODE_TRIANGLES;
       part.indices =
@@ -129,7 +139,7 @@ class GltfWriter {
                    3 * triangles.size(), TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
       made.primitives.push_back(part);
     };
-    addPart(mesh.leaf_triangles, 0);
+    addPart(corners.leaf_triangles, 0);
     addPart(mesh.wood_triangles, 1);
     model_.meshes.push_back(made);
     return static_cast<int>(model_.meshes.size()) - 1;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/whole_file.hpp"
+#include "plants/detail/textured_vertices.hpp"
 
 namespace sunfleck {
 namespace {
@@ -27,16 +28,22 @@ void putFaces(std::string& bytes, const std::vector<glm::uvec3>& triangles, bool
 
 void writePly(const std::filesystem::path& path, const TreeMesh& mesh) {
   requireNamed(path, ".ply");
+  const detail::TexturedVertices corners = detail::texturedVertices(mesh);
+  const bool textured = !corners.texture.empty();
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment {} leaves; metres, z up; wood: 0 leaf, 1 wood\nelement vertex {}\n"
-      "property float x\nproperty float y\nproperty float z\nelement face {}\nproperty list uchar uint vertex_indices\n"
+      "property float x\nproperty float y\nproperty float z\n{}element face {}\nproperty list uchar uint "
+      "vertex_indices\n"
       "property uchar wood\nend_header\n",
-      mesh.leaf_count, mesh.vertices.size(), mesh.leaf_triangles.size() + mesh.wood_triangles.size());
-  bytes.reserve(bytes.size() + 12 * mesh.vertices.size() +
+      mesh.leaf_count, corners.vertices.size(), textured ? "property float s\nproperty float t\n" : "",
+      mesh.leaf_triangles.size() + mesh.wood_triangles.size());
+  bytes.reserve(bytes.size() + (textured ? 20 : 12) * corners.vertices.size() +
                 14 * (mesh.leaf_triangles.size() + mesh.wood_triangles.size()));
-  for (const glm::vec3& v : mesh.vertices)
-    for (int axis = 0; axis < 3; ++axis) put(bytes, std::bit_cast<std::uint32_t>(v[axis]));
-  putFaces(bytes, mesh.leaf_triangles, false);
+  for (std::size_t i = 0; i < corners.vertices.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) put(bytes, std::bit_cast<std::uint32_t>(corners.vertices[i][axis]));
+    for (int axis = 0; textured && axis < 2; ++axis) put(bytes, std::bit_cast<std::uint32_t>(corners.texture[i][axis]));
+  }
+  putFaces(bytes, corners.leaf_triangles, false);
   putFaces(bytes, mesh.wood_triangles, true);
   writeWhole(path, bytes);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <glm/trigonometric.hpp>
 #include <limits>
 #include <map>
@@ -90,6 +91,8 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
               bool keep_optics) {
   if (tree.has("file") && tree.has("species"))
     throw InvalidInput(scene.origin + ": [tree] has both file and species: must be one of them");
+  if (tree.has("file") && tree.has("seed"))
+    throw InvalidInput(scene.origin + ": [tree] has both file and seed: a seed must be with a species");
   if (tree.has("file")) {
     ImportRules rules;
     if (tree.has("leaf")) rules.leaf = tree.texts("leaf");
@@ -103,6 +106,10 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
     rules.mesh = tree.text("mesh", "");
     importFile(kind, folder / tree.text("file", ""), rules, keep_optics);
   } else {
+    for (const char* key : {"leaf", "wood", "cards", "scale", "unit", "up", "mesh"})
+      if (tree.has(key))
+        throw InvalidInput(
+            fmt::format("{}: [tree] has {} and no file: must be with a file it is read from", scene.origin, key));
     const std::string name = tree.text("species", "cherry");
     const bool by_file = std::filesystem::path(name).extension() == ".toml";
     growTree(kind, by_file ? (folder / name).string() : name,
@@ -114,6 +121,34 @@ void readTree(const Scene& scene, TreeKind& kind, detail::SceneTable tree, const
   setLeaves(kind, scene.bands, kind.leaf);
 }
 
+// What is wrong in a table is told with the line at which it begins, where no line is told: of several [[tree]] it says
+// which.
+void atLineOf(const toml::node* table, const std::filesystem::path& file, const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InvalidInput& e) {
+    std::string wrong = e.what();
+    const std::string name = file.string() + ":";
+    const bool told = wrong.starts_with(name);
+    if (!table || (told && wrong.size() > name.size() && wrong[name.size()] != ' ')) throw;
+    if (told) wrong.erase(0, name.size() + 1);
+    throw InvalidInput(fmt::format("{}{}: {}", name, table->source().begin.line, wrong));
+  }
+}
+
+// Bands that no leaf is told by would be ignored.
+//   leaf  what [leaf] tells
+void requireBandsMatter(const Scene& scene, const TreeKind& leaf, const toml::table& table,
+                        const std::filesystem::path& file) {
+  const auto byContents = [](const auto& of) { return std::holds_alternative<LeafByContents>(of.description); };
+  if (!scene.bands || byContents(leaf) || std::ranges::any_of(scene.kinds, byContents) ||
+      std::ranges::any_of(scene.media, byContents))
+    return;
+  throw InvalidInput(fmt::format(
+      "{}:{}: leaf.bands_nm: must be with leaves told by species or prospect, in [leaf], [tree] or [medium]",
+      file.string(), table.at_path("leaf.bands_nm").node()->source().begin.line));
+}
+
 void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, const std::filesystem::path& file,
                bool keep_optics) {
   const toml::array* several = node ? node->as_array() : nullptr;  // [[tree]]
@@ -122,7 +157,10 @@ void readTrees(Scene& scene, const toml::node* node, const TreeKind& optics, con
   scene.kinds.assign(count, optics);
   for (std::size_t i = 0; i < count; ++i) {
     const toml::node* table = several ? several->get(i) : node;
-    readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), file.parent_path(), keep_optics);
+    atLineOf(table, file, [&] {
+      readTree(scene, scene.kinds[i], detail::SceneTable(table, file.string(), "tree"), file.parent_path(),
+               keep_optics);
+    });
     for (std::size_t before = 0; before < i; ++before)
       if (scene.kinds[before].name == scene.kinds[i].name)
         throw InvalidInput(fmt::format("{}:{}: tree.name = \"{}\": must differ from that of the other kinds of trees",
@@ -251,11 +289,12 @@ void readGround(Scene& scene, detail::SceneTable ground, const std::filesystem::
   ground.done();
 }
 
+constexpr std::array<std::string_view, 11> kSections{"name",   "tree", "medium", "stand",  "leaf",        "wood",
+                                                     "ground", "sun",  "sky",    "camera", "saved_camera"};
+
 Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   for (const auto& [key, node] : table) {
-    static constexpr std::array known{"name",   "tree", "medium", "stand",  "leaf",        "wood",
-                                      "ground", "sun",  "sky",    "camera", "saved_camera"};
-    if (std::find(known.begin(), known.end(), key.str()) == known.end())
+    if (std::ranges::find(kSections, key.str()) == kSections.end())
       throw InvalidInput(fmt::format("{}:{}: unknown key \"{}\"; see: sunfleck --help scene", file.string(),
                                      node.source().begin.line, key.str()));
   }
@@ -266,7 +305,7 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
   TreeKind optics = kindWith(kPaperLeaf);
   scene.bands = detail::readLightBands(leaf);
   const bool own_leaf = detail::tellsLeafShares(leaf, "");
-  detail::readOptics(optics, leaf, "", wood, "", scene.bands);
+  atLineOf(table.get("leaf"), file, [&] { detail::readOptics(optics, leaf, "", wood, "", scene.bands); });
   for (const detail::SceneTable* read : {&leaf, &wood}) read->done();
   readGround(scene, section("ground"), file.parent_path());
   if (const toml::node* media = table.get("medium")) detail::readMedia(scene, *media, optics, file);
@@ -278,6 +317,7 @@ Scene readTable(const toml::table& table, const std::filesystem::path& file) {
     scene.kinds[0].mesh = std::make_shared<const TreeMesh>();
     setLeaves(scene.kinds[0], scene.bands, optics.leaf);
   }
+  requireBandsMatter(scene, optics, table, file);
   readStand(scene, section("stand"));
   detail::readSuns(scene, table.get("sun"), file);
   detail::readSky(scene, section("sky"), file.parent_path());
@@ -342,6 +382,22 @@ std::vector<std::string> builtinScenes() {
   for (const std::string& plant : speciesNames())
     for (const char* copies : {"", "1", "16", "64"}) names.push_back(plant + copies);
   return names;
+}
+
+bool isSceneFile(const std::filesystem::path& file) {
+  bool is_scene = false;
+  try {
+    detail::readToml(file, [&](const toml::table& table) {
+      const toml::node_view tree = table["tree"];
+      is_scene = tree.is_array() || tree["species"] || tree["file"] ||
+                 std::ranges::any_of(kSections, [&](std::string_view name) {
+                   return name != "tree" && name != "name" && table.contains(name);
+                 });
+    });
+  } catch (const InvalidInput&) {
+    return false;
+  }
+  return is_scene;
 }
 
 Scene readScene(const std::string& name_or_file, const ImportRules& rules) {

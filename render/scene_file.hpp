@@ -14,6 +14,9 @@ namespace sunfleck {
 // file, line and key on anything that is wrong.
 Scene readScene(const std::string& name_or_file, const ImportRules& rules = {});
 
+// Whether a .toml file holds what a scene does and a species' parameters do not. Of a file that cannot be read: no.
+bool isSceneFile(const std::filesystem::path& file);
+
 // A kind of trees of a species, named after it. Throws InvalidInput on a species that is not known.
 TreeKind grownKind(const std::string& species_name, std::uint64_t seed);
 

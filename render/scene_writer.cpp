@@ -112,8 +112,9 @@ class Writer {
     const bool treeless =
         scene_.kinds[static_cast<std::size_t>(std::ranges::find(stands, 1) - stands.begin())].mesh->leaf_count == 0;
     if (treeless && scene_.media.empty()) refuse("has neither trees nor media");
-    if (treeless || scene_.bands) table("leaf");
-    if (scene_.bands) key("bands_nm", bands(*scene_.bands));
+    const bool banded = scene_.bands && tellsByContents(stands);
+    if (treeless || banded) table("leaf");
+    if (banded) key("bands_nm", bands(*scene_.bands));
     if (treeless) writeOptics(scene_.kinds.front());
     for (std::size_t kind = 0; !treeless && kind < scene_.kinds.size(); ++kind)
       if (stands[kind]) writeTree(scene_.kinds[kind], std::ranges::count(stands, 1) > 1);
@@ -135,6 +136,14 @@ class Writer {
   }
 
  private:
+  // Whether leaves that are written follow from the scene's bands.
+  bool tellsByContents(const std::vector<char>& stands) const {
+    const auto by = [](const auto& of) { return std::holds_alternative<LeafByContents>(of.description); };
+    for (std::size_t kind = 0; kind < scene_.kinds.size(); ++kind)
+      if (stands[kind] && by(scene_.kinds[kind])) return true;
+    return std::ranges::any_of(scene_.media, by);
+  }
+
   [[noreturn]] void refuse(const std::string& why) const {
     throw InvalidInput(fmt::format("scene \"{}\": {}: cannot be written as a scene file", scene_.name, why));
   }

@@ -57,6 +57,7 @@ SHARED_CONSTANT int kGlossViews = 20;    // nodes over sqrt(mu) / (sqrt(mu) + sq
 SHARED_CONSTANT int kGlossHeights = 32;  // nodes
 SHARED_CONSTANT int kGlossTurns = 9;     // nodes over -1 .. 1
 SHARED_CONSTANT int kGlossSlantsFirst = 65;
+SHARED_CONSTANT int kGlossMeanAlbedo = 129;  // the last of A: light of the leaf's whole side
 SHARED_CONSTANT int kGlossSharesFirst = 130;
 SHARED_CONSTANT int kGlossNumbers = 5890;
 

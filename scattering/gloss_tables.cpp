@@ -16,6 +16,7 @@ namespace {
 using namespace gloss;
 static_assert(kGlossTableNumbers == kGlossNumbers);
 static_assert(kGlossSlantsFirst == kGlossAlbedos + 1 && kGlossSharesFirst == kGlossSlantsFirst + kGlossSlants + 1);
+static_assert(kGlossMeanAlbedo == kGlossSlantsFirst + kGlossSlants);
 static_assert(kGlossNumbers == kGlossSharesFirst + kGlossViews * kGlossHeights * kGlossTurns);
 
 // Share of the directions of one cosine to the leaf's normal that lie in the half about a normal of another.

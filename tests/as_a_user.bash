@@ -5,6 +5,9 @@ program=$(readlink -f "$1")
 place=$(mktemp -d)
 trap 'rm -rf "$place" "$place.before"' EXIT
 cd "$place" || exit 1
+# A level leaf of 1 x 1 m.
+square='v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n'
+printf "$square"'usemtl leaf\nf 1 2 3 4\n' >leaf.obj
 failures=0
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 conclude() {

@@ -81,7 +81,7 @@ TEST(F26_FieldPicture, ShowsTheFieldOfEachLeafAndSide) {
         const bool told = tree + 1 < field.sides.size();
         (told ? leaves : not_told) += 1;
         const shading::Surface surface =
-            shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), 0, 0, normal, -along);
+            shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), {}, 0, 0, normal, -along);
         const std::vector<glm::vec3>& sides = field.sides[tree];
         const std::size_t place = SomeField::isFar(tree) ? mesh.leaf_count - 1 - leaf : leaf;
         const glm::vec3 expected =

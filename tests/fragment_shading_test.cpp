@@ -110,7 +110,7 @@ TEST(R26_GlossTables, SendLightOfHalfTheSphereAsTracedLeavesDo) {
     constexpr int kViews = 60;
     for (int i = 0; i < kViews; ++i) {
       const auto [normal, to_eye] = drawnView(random);
-      const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, to_eye), kFullLight, 0);
+      const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, {}, 0, 0, normal, to_eye), kFullLight, 0);
       const double expected = traced.sentFromHalf(normal, to_eye, -travel, 160);
       EXPECT_NEAR(shaded.scattered[0], expected, 0.045) << "roughness " << roughness << ", line of sight " << i;
       squares += std::pow(double{shaded.scattered[0]} - expected, 2);
@@ -132,7 +132,7 @@ TEST(R20_FragmentShading, SendsDirectLightAsTracedLeavesDo) {
     if (i % 4 == 0)
       to_eye = glm::normalize(2.f * dot(normal, -travel) * normal + travel + 0.1f * drawnDirection(random));
     if (dot(normal, to_eye) < 0.f) normal = -normal;
-    const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, to_eye), kFullLight, 0);
+    const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, {}, 0, 0, normal, to_eye), kFullLight, 0);
     const double expected = traced.sent(normal, to_eye, -travel);
     EXPECT_NEAR(shaded.direct[0], expected, 1e-4 * (1. + expected)) << i;
     EXPECT_EQ(shaded.scattered[0], 0.f);
@@ -148,7 +148,7 @@ TEST(R26_GlossTables, CountAllLightOnce) {
     Random random(5, 0);
     for (int i = 0; i < 1000; ++i) {
       const auto [normal, to_eye] = drawnView(random);
-      const Surface surface = shading.leafSurface(0, 0, 0, normal, to_eye);
+      const Surface surface = shading.leafSurface(0, {}, 0, 0, normal, to_eye);
       EXPECT_NEAR(shading.shadeByLight(surface, kFullLight, 0).scattered[0], 1.f, 1e-5f);
       EXPECT_NEAR(shading.shadeBySky(surface, glm::vec3(1.f)).scattered[0], 1.f, 1e-5f);
     }
@@ -170,7 +170,7 @@ TEST(R27_FragmentShading, ByStreamsIsThatOfTheSlab) {
       const double down = double{g} * (light.power_down - light.direct), up = double{g} * light.power_up;
       const FragmentLight at{.foliage = {depth, thickness - depth, 0.f}, .thickness = thickness, .compensation = g};
       const auto sent = [&](const glm::vec3& normal) {
-        return double{shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, normal), at, 0).scattered[0]};
+        return double{shading.shadeByLight(shading.leafSurface(0, {}, 0, 0, normal, normal), at, 0).scattered[0]};
       };
       constexpr double kPi = std::numbers::pi;
       EXPECT_NEAR(sent({0.f, 0.f, 1.f}), (0.6 * down + 0.3 * up) / (2. * kPi), 3e-4);
@@ -200,7 +200,7 @@ TEST(R35_FragmentShading, TellsLightScatteredOnceBefore) {
       const double down = scale * (faint.down - std::exp(-double{depth})), up = scale * faint.up;
       const FragmentLight at{.foliage = {depth, thickness - depth, 0.f}, .thickness = thickness, .compensation = g};
       for (const glm::vec3 normal : {glm::vec3(0.f, 0.f, 1.f), glm::vec3(0.f, 0.f, -1.f), glm::vec3(0.6f, 0.f, 0.8f)}) {
-        const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, 0, 0, normal, normal), at, 0);
+        const Shaded shaded = shading.shadeByLight(shading.leafSurface(0, {}, 0, 0, normal, normal), at, 0);
         const double expected = spp::precise::lambertRadiance(spp::precise::halvesOnSides(double{normal.z}, {down, up}),
                                                               double{leaf.reflectance}, double{leaf.transmittance});
         EXPECT_NEAR(double{shaded.single[1]}, expected, 1e-6) << thickness << " " << part;

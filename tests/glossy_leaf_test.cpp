@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
@@ -17,9 +16,11 @@
 #include "render/reference/forward_trace.hpp"
 #include "render/reference/trace_run.hpp"
 #include "scattering/leaf_gloss.hpp"
+#include "tests/half_sphere.hpp"
 #include "tests/leaf_shapes.hpp"
 
 using namespace sunfleck;
+using namespace sunfleck::half_sphere;
 using namespace sunfleck::shapes;
 
 namespace {
@@ -28,33 +29,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr float kRoughnesses[]{0.05f, 0.1f, 0.3f, 0.6f, 1.f};
 // Error of the gloss's table of albedos, from its 64 intervals and its rule over slopes; measured: 4.7e-4.
 constexpr double kTableError = 1e-3;
-
-glm::vec3 towards(double zenith, double azimuth) {
-  return glm::vec3(
-      glm::dvec3(std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)));
-}
-
-// Integral over the upper half of the sphere, by the rule of midpoints about an axis: near it the rings lie close.
-double integral(const std::function<double(const glm::vec3&)>& value, const glm::vec3& about, int rings) {
-  const Axes axes = axesAlong(about);
-  double sum = 0.;
-  for (int i = 0; i < rings; ++i) {
-    const double share = (i + 0.5) / rings, angle = kPi * share * share * share;
-    const double ring = kPi * 3. * share * share / rings * std::sin(angle) * 2. * kPi / rings;
-    for (int j = 0; j < rings; ++j) {
-      const double turn = 2. * kPi * (j + 0.5) / rings;
-      const glm::vec3 direction = static_cast<float>(std::cos(angle)) * axes.along +
-                                  static_cast<float>(std::sin(angle) * std::cos(turn)) * axes.right +
-                                  static_cast<float>(std::sin(angle) * std::sin(turn)) * axes.up;
-      if (direction.z > 0.f) sum += ring * value(direction);
-    }
-  }
-  return sum;
-}
-
-glm::vec3 mirrored(const glm::vec3& v) {
-  return {-v.x, -v.y, v.z};
-}
 
 TraceLight lightOn(const LeafOptics& leaf) {
   return {.sun = sunlight(0.7f, 1.f), .leaf = leaf};

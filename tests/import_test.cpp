@@ -144,6 +144,7 @@ TEST_F(Import, MissingMaterialFileKeepsNames) {
   const TreeMesh mesh = importTree(file("t.obj", "mtllib gone.mtl\n" + kSquare + faces)).mesh;
   EXPECT_EQ(mesh.leaf_triangles.size(), 1u);
   EXPECT_EQ(mesh.wood_triangles.size(), 1u);
+  EXPECT_NE(importTree(folder_ / "t.obj").how.find("; its material file gone.mtl is missing"), std::string::npos);
   EXPECT_EQ(refusal(file("u.obj", "mtllib gone.mtl\n" + kSquare + "usemtl m1\nf 1 2 3\nusemtl m2\nf 1 3 4\n")),
             "u.obj: leaf and wood cannot be told apart: no telling what material \"m1\"; material \"m2\" is (its "
             "material file gone.mtl is missing): say which with --leaf NAME or --wood NAME, or --leaf '*' when "
@@ -329,4 +330,27 @@ TEST_F(Import, BrokenPlyIsRefused) {
       {plyWith("3", "1", "0 0 0\n1 0 0\n0 1 0\n3 0 1"), "t.ply line 13: face 1: the file ends before it is complete"},
   };
   for (const auto& [content, expected] : cases) EXPECT_EQ(refusal(file("t.ply", content)), expected);
+}
+
+// Check that a backslash at the end of a line of an OBJ continues it, of numbers and of names, but not of a comment.
+TEST_F(Import, BackslashesContinueLines) {
+  const TreeMesh mesh = importTree(file("t.obj",
+                                        "# C:\\trees\\\nv 0 0 0\nv 1 \\\r\n 0 \\\r\n 0\nv 1 1 0\nv 0 1 0\nusemtl \\\n"
+                                        "leaf\nf 1 2 \\\n3 4\nusemtl bark\nf 1 2 3\\"))
+                            .mesh;
+  EXPECT_EQ(mesh.vertices.size(), 4u);
+  EXPECT_EQ(mesh.leaf_triangles.size(), 2u);
+  EXPECT_EQ(mesh.wood_triangles.size(), 1u);
+}
+
+// Check that messages quote bytes that are no text as such, and names of any script as they are.
+TEST_F(Import, MessagesHoldText) {
+  EXPECT_EQ(refusal(file("t.obj", kSquare + "g leaf\nf \xff\xfe\x01 2 3\n")),
+            "t.obj line 6: vertex index = ???: must be a whole number");
+  EXPECT_EQ(refusal(file("u.obj", kSquare + "g leaf\nf \xc3\xa9 2 3\n")),
+            "u.obj line 6: vertex index = \xc3\xa9: must be a whole number");
+  EXPECT_EQ(refusal(file("t.ply",
+                         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float z\nelement face "
+                         "0\nproperty list uchar int vertex_indices\nend_header\n1 2\n")),
+            "t.ply: property y of the vertices = (missing): must be a number of each vertex");
 }

@@ -3,7 +3,6 @@
 # and one line on stderr, and leave nothing behind. Usage: leaf_command_line.sh PATH_TO_SUNFLECK
 source "$(dirname "$0")/as_a_user.bash" "$1"
 
-printf 'v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nusemtl leaf\nf 1 2 3 4\n' >leaf.obj
 printf 'a,b\n1,2\n' >header.csv
 printf 'wavelength_nm,reflectance\n500,0.1\n' >few.csv
 printf 'wavelength_nm,reflectance\n500,2\n' >high.csv
@@ -42,6 +41,15 @@ does "1 outside of 400 to 2500 nm left out" leaf --fit wide.csv
 does "A                        0.594" leaf --tissue absorption=0.5,scattering=4.5,thickness=0.2
 does '"reflectance": 0.26741' leaf --tissue absorption=0.5,scattering=4.5,thickness=0.2 --json
 does "transmittance                0.35" leaf --sides reflectance=0.4,transmittance=0.35
+# Maps of four places.
+printf 'P3 2 2 255  20 40 15  30 60 20  25 50 18  20 40 15' >r.ppm
+printf 'P3 2 2 255  25 60 8  20 50 6  30 65 10  25 60 8' >t.ppm
+does "wrote oak_upper.png, oak_lower.png, oak.toml" leaf --fit-maps --upper-reflectance r.ppm --lower-reflectance r.ppm \
+  --transmittance t.ppm --thickness 0.3 -o oak.png
+grep -q "thickness = 0.3 }" oak.toml || fail "oak.toml tells another thickness"
+does '"converged": true' leaf --fit-maps --upper-reflectance r.ppm --transmittance t.ppm -o ash.exr --json
+printf '[tree]\nfile = "leaf.obj"\n' | cat - oak.toml >oak_tree.toml
+does "back to the sky" trace oak_tree.toml --paths 1000 --quiet
 printf '[tree]\nfile = "leaf.obj"\n[leaf]\nslab = { absorption = 0.5, scattering = 4.5, thickness = 0.2 }\n' >slab.toml
 does "back to the sky" trace slab.toml --paths 1000 --quiet
 
@@ -82,9 +90,20 @@ refuses "nan.csv:2: reflectance = nan: must be" leaf --fit nan.csv
 refuses "negative.csv:2: wavelength_nm = -500: must be" leaf --fit negative.csv
 refuses "short.csv:2: 1 fields: must be 2" leaf --fit short.csv
 refuses "far.csv: must have at least one row in [400, 2500] nm" leaf --fit far.csv
-refuses "beech.csv: held sugar: must be one of" leaf --fit beech.csv --hold sugar=1
+refuses "--hold: held sugar: must be one of" leaf --fit beech.csv --hold sugar=1
 refuses "held protein: must be a content of this kind of leaf" leaf --fit beech.csv --hold protein=0.01
 refuses "--json" leaf --list --json
+printf 'P3 1 1 255  20 40 15' >one.ppm
+printf 'P3 2 2 255  0 0 0  0 0 0  0 0 0  0 0 0' >black.ppm
+refuses "requires --transmittance" leaf --fit-maps --upper-reflectance r.ppm -o x.png
+refuses "requires --fit-maps" leaf --transmittance t.ppm
+refuses "excludes" leaf beech --fit-maps --upper-reflectance r.ppm --transmittance t.ppm -o x.png
+refuses "must be .exr or .png" leaf --fit-maps --upper-reflectance r.ppm --transmittance t.ppm -o x.txt
+refuses "none.ppm: cannot be read" leaf --fit-maps --upper-reflectance r.ppm --transmittance none.ppm -o x.png
+refuses "one.ppm: has 1 x 1 pixels: must have 2 x 2" leaf --fit-maps --upper-reflectance r.ppm --transmittance one.ppm -o x.png
+refuses "mean transmittance in red = 0: must be at least 1e-4" leaf --fit-maps --upper-reflectance r.ppm \
+  --transmittance black.ppm -o x.png
+refuses "in [1e-6, 500] mm" leaf --fit-maps --upper-reflectance r.ppm --transmittance t.ppm --thickness 0 -o x.png
 refuses "--tissue: thickness: must be told" leaf --tissue absorption=1,scattering=2
 refuses "--tissue: gloss: must be one of: absorption, scattering, thickness" leaf --tissue gloss=1
 refuses "--tissue: absorption = -1: must be in [0, 1e6] 1/mm" leaf --tissue absorption=-1,scattering=2,thickness=1
@@ -97,4 +116,7 @@ refuses '--leaf-species = "oak": must be one of' trace leaf.obj --leaf-species o
 refuses "--leaf-prospect: water = 11: must be" render leaf.obj --leaf-prospect water=11 -o y.png
 refuses "--leaf-bands: must be with" validate leaf.obj --leaf-bands 450,550,670
 refuses "--leaf-bands: number of bands = 2: must be 3" trace leaf.obj --leaf-species corn --leaf-bands 450,550
+printf 'wavelength_nm,reflectance,transmittance\n500,0.7,0.5\n' >bright.csv
+refuses "bright.csv:2: reflectance + transmittance = 1.2: must be at most 1.1" leaf --fit bright.csv
+refuses "--hold: held foo: must be one of" leaf --fit beech.csv --hold foo=1
 conclude

@@ -60,8 +60,8 @@ TEST(LeafMaps, SharesOfSmallCutAndUnknownParts) {
   cut.patches[1].mask = 0;
   const std::vector<float> masked = leafAreaShares(cut, 64, 64);
   EXPECT_NEAR(sum(masked), 1., 1e-5);
-  for (std::size_t i = 0; i < masked.size(); ++i)
-    if (i % 64 >= 32) EXPECT_EQ(masked[i], 0.f) << i;
+  for (std::size_t row = 0; row < 64; ++row)
+    for (std::size_t i = 32; i < 64; ++i) EXPECT_EQ(masked[64 * row + i], 0.f) << row << " " << i;
 
   TreeMesh unknown = twoLeaves(kLowerLeft, kLowerLeft);
   unknown.patch_of_triangle.clear();

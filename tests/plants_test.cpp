@@ -105,7 +105,7 @@ TEST_P(PlainSpecies, LeavesAreAttachedToWood) {
   const std::size_t step = 2 * (tree.leaf_count / 30);  // some 30 leaves: the search is by brute force
   for (std::size_t i = 0; i < tree.leaf_triangles.size(); i += step) {
     const glm::uvec3& leaf = tree.leaf_triangles[i];
-    const glm::vec3 base = 0.5f * (tree.vertices[leaf.x] + tree.vertices[leaf.y]);
+    const glm::vec3 base = 0.5f * (tree.vertices[leaf.x] + tree.vertices[leaf.z]);
     float nearest = 1e9f;
     for (const glm::uvec3& t : tree.wood_triangles)
       nearest = std::min(nearest, distanceToEdge(base, tree.vertices[t.x], tree.vertices[t.z]));

@@ -212,7 +212,7 @@ TEST_F(SceneLeaf, RefusesWhatIsNoLeaf) {
     const std::string message = refusal("[tree]\nfile = \"tree.obj\"\n[leaf]\n" + keys + "\n");
     EXPECT_NE(message.find(expected), std::string::npos) << message;
   };
-  refuses("species = \"oak\"", "s.toml: leaf.species = \"oak\": must be one of: almond, beech");
+  refuses("species = \"oak\"", "s.toml:3: leaf.species = \"oak\": must be one of: almond, beech");
   refuses("species = 3", "s.toml:4: leaf.species = 3: must be a text in quotes");
   refuses("prospect = { sugar = 1 }", "s.toml:4: unknown key \"sugar\" in [leaf.prospect]");
   refuses("prospect = { structure = 0.5 }", "s.toml:4: leaf.prospect.structure = 0.5: must be in [1, 10]");
@@ -225,7 +225,8 @@ TEST_F(SceneLeaf, RefusesWhatIsNoLeaf) {
   refuses("bands_nm = [[600], 550, 450]", "s.toml:4: leaf.bands_nm = [ 600 ]: must be three bands");
   refuses("species = \"corn\"\nreflectance = 0.4", "[leaf] has both species and reflectance: must be one of them");
   refuses("prospect = { }\ntransmittance = 0.4", "[leaf] has both prospect and transmittance: must be one of them");
-  refuses("slab = { absorption = 1.0, scattering = 10.0 }", "s.toml: leaf.slab has no thickness: must have absorption");
+  refuses("slab = { absorption = 1.0, scattering = 10.0 }",
+          "s.toml:3: leaf.slab has no thickness: must have absorption");
   refuses("slab = { absorption = -1.0, scattering = 10.0, thickness = 0.2 }", "leaf.slab.absorption = -1: must be in");
   refuses("slab = { absorption = 1.0, scattering = 10.0, thickness = 0.2, h = 1 }", "unknown key \"h\" in [leaf.slab]");
   refuses("slab = { absorption = 1.0, scattering = 10.0, thickness = 0.2 }\nspecies = \"corn\"",

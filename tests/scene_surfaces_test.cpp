@@ -116,11 +116,11 @@ TEST_F(SceneSurfaces, ReadsUnitsAndAxes) {
   EXPECT_EQ(corner("up = \"y\"\n"), glm::vec3(2.f, -1.f, 1.f));
   EXPECT_EQ(corner("up = \"x\"\nscale = 2.0\n"), glm::vec3(2.f, 2.f, 4.f));
   EXPECT_EQ(refusal("unit = \"furlong\"\n"),
-            "s.toml: tree.unit = \"furlong\": must be one of m, dm, cm, mm, km, in, ft");
-  EXPECT_EQ(refusal("up = \"w\"\n"), "s.toml: tree.up = \"w\": must be one of x, y, z");
-  EXPECT_EQ(refusal("cards = \"trumps\"\n"), "s.toml: tree.cards = \"trumps\": must be one of cut, mask, whole");
-  EXPECT_EQ(refusal("unit = \"cm\"\nscale = 2.0\n"), "s.toml: [tree] has both scale and unit: must be one of them");
-  EXPECT_EQ(refusal("mesh = \"oak\"\n"), "s.toml: tree.obj: mesh \"oak\": must be of a glTF file");
+            "s.toml:1: tree.unit = \"furlong\": must be one of m, dm, cm, mm, km, in, ft");
+  EXPECT_EQ(refusal("up = \"w\"\n"), "s.toml:1: tree.up = \"w\": must be one of x, y, z");
+  EXPECT_EQ(refusal("cards = \"trumps\"\n"), "s.toml:1: tree.cards = \"trumps\": must be one of cut, mask, whole");
+  EXPECT_EQ(refusal("unit = \"cm\"\nscale = 2.0\n"), "s.toml:1: [tree] has both scale and unit: must be one of them");
+  EXPECT_EQ(refusal("mesh = \"oak\"\n"), "s.toml:1: tree.obj: mesh \"oak\": must be of a glTF file");
 }
 
 // Check a mask from a PNG whose left half is leaf, where the code value is at least half of the largest whatever light

@@ -74,7 +74,7 @@ TEST(R27_StandRenderer, ShadesAsCppDoes) {
         ++leaves;
         const glm::vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
         const shading::Surface surface =
-            shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), 0, 0, normal, to_eye);
+            shading.leafSurface(static_cast<std::uint32_t>(at("id.kind")), {}, 0, 0, normal, to_eye);
         const float before = at("foliage.before"), beyond = at("foliage.beyond");
         const shading::Shaded shaded = shading.shadeByLight(surface,
                                                             {.foliage = {before, beyond, at("foliage.visible")},

@@ -54,7 +54,7 @@ constexpr const char* kMain = R"(
     if (i >= inputs.length()) return;
     Input x = inputs[i];
     uint kind = uint(x.normal.w);
-    Surface surface = x.to_eye.w == 0.0   ? leafSurface(kind, 0u, 0u, x.normal.xyz, x.to_eye.xyz)
+    Surface surface = x.to_eye.w == 0.0   ? leafSurface(kind, kNoLeafPlace, true, 0u, 0u, x.normal.xyz, x.to_eye.xyz)
                       : x.to_eye.w == 1.0 ? woodSurface(kind, 0u, x.normal.xyz, x.to_eye.xyz)
                                           : opaqueSurface(kind, 0u, x.albedo.xyz, x.normal.xyz, x.to_eye.xyz);
     Foliage foliage = Foliage(x.foliage.x, x.foliage.y, x.foliage.z);
@@ -97,7 +97,7 @@ std::vector<Output> shadedInCpp(Model model, const ShadingData& data, const std:
   for (const Input& x : inputs) {
     const uint kind = static_cast<uint>(x.normal.w);
     const vec3 normal(x.normal), to_eye(x.to_eye);
-    const Surface surface = x.to_eye.w == kLeaf   ? shading.leafSurface(kind, 0, 0, normal, to_eye)
+    const Surface surface = x.to_eye.w == kLeaf   ? shading.leafSurface(kind, {}, 0, 0, normal, to_eye)
                             : x.to_eye.w == kWood ? shading.woodSurface(kind, 0, normal, to_eye)
                                                   : shading.groundSurface(kind, vec3(x.albedo), normal, to_eye);
     const FragmentLight at{

@@ -164,6 +164,26 @@ TEST_F(TreeFiles, BrokenGltfIsRefused) {
   EXPECT_NE(refusal("{"), "");
   EXPECT_NE(refusal(R"({"asset":{"version":"2.0"}})"), "");
   EXPECT_EQ(refusal(std::string(100'000, '[')), "depth of its JSON = 65: must be at most 64");
+  EXPECT_EQ(refusal("{]"), "first byte of its JSON that is out of place = 2: must be none: it is not glTF");
+  const std::string with_material = gltf(R"("meshes":[{"name":"leaf","primitives":[{"attributes":{"POSITION":0},)"
+                                         R"("material":0}]}],"materials":[{"name":"m",MORE}],)" +
+                                         kOneNode);
+  const auto material = [&](const std::string& more, const std::string& number = "0") {
+    std::string text = with_material;
+    text.replace(text.find("MORE"), 4, more);
+    return refusal(text.replace(text.find("\"material\":0") + 11, 1, number));
+  };
+  EXPECT_EQ(material(R"("alphaMode":"MASK")"), "");
+  EXPECT_EQ(material(R"("extras":{"scale":"a","matrix":[{}]})"), "");
+  EXPECT_EQ(material(R"("alphaMode":"MASK")", "4"), "material = 4: must be one of the file's");
+  EXPECT_EQ(material(R"("alphaCutoff":"half")"), "alphaCutoff = \"half\": must be of numbers");
+  EXPECT_EQ(material(R"("extensions":{"KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1.5}})"),
+            "material \"m\": diffuseTransmissionFactor = 1.5: must be in [0, 1]");
+  for (const char* scale : {R"(["a",1,1])", R"([1,[],"a"])"})
+    EXPECT_EQ(refusal(gltf(kMesh + R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":)" + scale + "}]")),
+              "scale = \"a\": must be of numbers");
+  std::string old = gltf(kMesh + kOneNode);
+  EXPECT_EQ(refusal(old.replace(old.find("2.0"), 3, "1.0")), "asset's version = 1.0: must be 2.0");
   EXPECT_EQ(refusal("glTF\2"), "is broken: its header is not that of a whole .glb of version 2");
   EXPECT_EQ(refusal(gltf(kMesh + R"("scenes":[{"nodes":[7]}],"nodes":[{"mesh":0}])")),
             "node = 7: must be one of the file's");

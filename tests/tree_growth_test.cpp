@@ -72,7 +72,7 @@ std::vector<PlainLeaf> plainLeaves(const TreeMesh& mesh) {
   for (std::size_t i = 0; i < mesh.leaf_triangles.size(); i += 2) {
     const glm::uvec3& t = mesh.leaf_triangles[i];
     const glm::dvec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
-    leaves.push_back({0.5 * (a + b), glm::normalize(c - b)});
+    leaves.push_back({0.5 * (a + c), glm::normalize(b - c)});
   }
   return leaves;
 }

@@ -93,7 +93,7 @@ void Viewer::takeResult() {
     gl::DrawnStand stand = gl::drawnStand(result->made.scene, *result->geometry);
     for (std::size_t kind = 0; kind < stand.kinds.size(); ++kind) stand.kinds[kind].levels = result->levels[kind];
     const gl::Sent sent = renderer_.update(stand);
-    report_.sent_bytes = sent.meshes + sent.maps + sent.trees + sent.cells + sent.sky + sent.field;
+    report_.sent_bytes = sent.all();
     field_ = result->geometry->field() ? result->geometry->field()->revision() : 0;
     stand_ = result->made.revision;
   } catch (const gl::TooLarge& e) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "plants/detail/gltf_materials.hpp"
@@ -31,23 +32,25 @@ class GltfFaces {
 
  private:
   struct Corners {
-    std::uint32_t first, first_texture;  // kNoTexture: none
+    std::uint32_t first;
     std::size_t count;
+    std::uint32_t first_texture = NamedTriangles::kNoTexture;
   };
 
-  // Of accessors of positions and texture coordinates, and the material that moves these.
-  using KnownCorners = std::map<std::tuple<int, int, int>, Corners>;
+  using KnownCorners = std::map<int, Corners>;  // of accessors of positions
   void addPrimitive(const tinygltf::Primitive& primitive, const PlacedMesh& placed, KnownCorners& known);
-  Corners addVertices(int positions, int texture, const GltfMaterial* material, const glm::dmat4& to_world);
-  void addTriangles(const std::vector<std::uint32_t>& corners, int mode, const Corners& of, std::uint32_t part);
+  Corners addVertices(int positions, const glm::dmat4& to_world);
+  std::uint32_t textureOf(const tinygltf::Primitive& primitive, std::size_t vertices);
+  void addTriangles(const std::vector<std::uint32_t>& corners, int mode, bool mirrored, const Corners& of,
+                    std::uint32_t part);
   std::uint32_t partOf(const tinygltf::Primitive& primitive, const PlacedMesh& placed);
 
   const tinygltf::Model& model_;
   const std::vector<GltfMaterial>& materials_;
   std::size_t most_;
   const std::string& source_;
-  bool any_masks_;
-  std::map<std::tuple<int, int, int>, std::uint32_t> part_of_;  // by material, mesh and node
+  std::map<std::pair<int, int>, std::uint32_t> first_texture_of_;  // by accessor, and material that moves it or -1
+  std::map<std::tuple<int, int, int>, std::uint32_t> part_of_;     // by material, mesh and node
 };
 
 }  // namespace sunfleck::detail

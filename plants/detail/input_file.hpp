@@ -10,7 +10,8 @@ namespace sunfleck::detail {
 // file, not permitted, or empty.
 std::string readWhole(const std::filesystem::path& path);
 
-// Text of the user's file made fit for a one-line message: at most 200 bytes, without control characters.
+// Text of the user's file made fit for a one-line message: some 200 bytes at most, without control characters
+// and bytes that are not UTF-8.
 std::string shown(std::string_view text);
 
 }  // namespace sunfleck::detail

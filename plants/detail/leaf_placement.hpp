@@ -10,6 +10,9 @@ namespace sunfleck::detail {
 struct LeafTemplates {
   explicit LeafTemplates(const WeberPenn& parameters);
   LeafTemplate leaf, blossom;
+
+  // Of the leaf's triangles in turn: what the patches of a tree's leaves are numbers of. Blossoms show no images.
+  std::vector<LeafPatch> patches() const;
 };
 
 // Adds `count` leaves to one strand of a twig, from its base to its tip, or as a fan at its tip: each with vertices of

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
 #include "core/leaf_mask.hpp"
@@ -11,6 +12,15 @@ namespace sunfleck::detail {
 // as seen in a picture with y down, so that the signed area below is positive of outlines and negative of holes.
 using Outline = std::vector<glm::dvec2>;
 double signedArea(const Outline& outline);  // [pixel^2]
+
+// Twice the signed area of the triangle of three points: above 0 where c lies on the left of the line from a to b, with
+// y up.
+inline double turnOf(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Whether a closed line winds about the point, by the even-odd rule.
+bool contains(std::span<const glm::dvec2> outline, const glm::dvec2& point);
 
 // The lines between leaf and no leaf along the pixels' edges, without corners on straight lines. Pixels that touch at a
 // corner alone are apart.

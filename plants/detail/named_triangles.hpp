@@ -16,7 +16,8 @@ struct NamedTriangles {
   std::vector<glm::vec3> vertices;
   std::vector<glm::vec2> texture;           // u to the right and v up, 0 .. 1 over an image
   std::vector<glm::uvec3> triangles;        // corners, as indices of `vertices`
-  std::vector<glm::uvec3> texture_corners;  // of each triangle, as indices of `texture`; empty where nothing has any
+  std::vector<glm::uvec3> texture_corners;  // of each triangle, as indices of `texture`; or
+                                            // kNoTexture; empty where nothing has any
   std::vector<std::uint32_t> part_of_triangle;
   std::vector<Part> parts;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -10,9 +11,10 @@
 
 namespace sunfleck::detail {
 
-// An OBJ's geometry, whose names refer to its text.
+// An OBJ's geometry, whose names refer to its text and to `joined`.
 struct ObjFile {
   NamedTriangles faces;
+  std::deque<std::string> joined;                // lines that backslashes continue
   std::vector<std::string_view> material_files;  // what follows each mtllib
 };
 

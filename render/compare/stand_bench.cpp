@@ -19,7 +19,6 @@ namespace sunfleck {
 namespace {
 
 constexpr std::size_t kRepeated = 64;  // trees: larger stands are prepared once
-constexpr int kRounds = 3;
 
 using Tree = std::shared_ptr<const TreeMesh>;
 
@@ -85,7 +84,7 @@ void requireSameWhenMoved(const std::vector<Tree>& trees) {
       throw std::runtime_error("a moved tree leaves other G-factors than a stand made afresh: no time is told");
 }
 
-StandBenchRow measured(const std::string& name, const std::vector<Tree>& trees, std::size_t count) {
+StandBenchRow measured(const std::string& name, const std::vector<Tree>& trees, std::size_t count, int most_rounds) {
   const auto once = [&] {
     BenchedStand benched(trees, count);
     FoliageStand& stand = benched.stand;
@@ -118,7 +117,7 @@ StandBenchRow measured(const std::string& name, const std::vector<Tree>& trees, 
     return row;
   };
   std::vector<StandBenchRow> rounds{once()};
-  while (count <= kRepeated && rounds.size() < kRounds) rounds.push_back(once());
+  while (count <= kRepeated && rounds.size() < static_cast<std::size_t>(most_rounds)) rounds.push_back(once());
   StandBenchRow row = rounds.front();
   for (double StandBenchRow::*const time :
        {&StandBenchRow::prepare, &StandBenchRow::sky, &StandBenchRow::light_map, &StandBenchRow::turn_sun,
@@ -131,7 +130,7 @@ StandBenchRow measured(const std::string& name, const std::vector<Tree>& trees, 
 
 }  // namespace
 
-StandBench benchStands(std::size_t most_trees, const Progress& progress) {
+StandBench benchStands(std::size_t most_trees, int rounds, const Progress& progress) {
   const auto grown = [](const std::string& name) { return std::make_shared<const TreeMesh>(grow(species(name), 1)); };
   struct Case {
     std::string name;
@@ -156,7 +155,7 @@ StandBench benchStands(std::size_t most_trees, const Progress& progress) {
   for (const Case& one : cases) work += static_cast<double>(one.count) + 100.;
   for (const Case& one : cases) {
     if (!goOn(progress, done / work)) return {};
-    bench.rows.push_back(measured(one.name, one.trees, one.count));
+    bench.rows.push_back(measured(one.name, one.trees, one.count, rounds));
     done += static_cast<double>(one.count) + 100.;
   }
   return bench;

@@ -33,7 +33,8 @@ struct StandBench {
 // Stands of 16 and 64 cherries and maples, as in the paper, then stands of four species, 16 trees and more, by factors
 // of four up to `most_trees`. The small ones are prepared three times, the median told. Before anything is timed, a
 // stand with a moved tree must be the same to the bit as one made so afresh. Ended early by `progress`: no rows.
-StandBench benchStands(std::size_t most_trees, const Progress& progress = {});
+//   rounds  at least 1, of stands of up to 64 trees, of which the median is told; larger ones are measured once
+StandBench benchStands(std::size_t most_trees, int rounds, const Progress& progress = {});
 
 // The paper's figures for a stand of ours, of its own trees, on its machine of 2010 with a GPU [s]; none for others.
 struct PaperStand {

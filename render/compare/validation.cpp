@@ -52,7 +52,10 @@ std::vector<std::vector<TraceLight>> traceLightsOfSuns(const Scene& scene, const
       if (scene.ground_rpv) light.ground_rpv = (*scene.ground_rpv)[static_cast<std::size_t>(band)];
       light.ground_texture = scene.ground_texture[static_cast<std::size_t>(band)];
       for (const TreeKind& kind : scene.kinds)
-        light.of_kinds.push_back({kind.leaf[static_cast<std::size_t>(band)], kind.wood_reflectance[band]});
+        light.of_kinds.push_back({.leaf = kind.leaf[static_cast<std::size_t>(band)],
+                                  .wood_reflectance = kind.wood_reflectance[band],
+                                  .maps = kind.maps,
+                                  .map_band = band});
       for (const SceneMedium& medium : scene.media)
         light.of_media.push_back(medium.optics[static_cast<std::size_t>(band)]);
     }

@@ -34,6 +34,7 @@ bool hasSky() { return counts.y > 0u; }
 struct KindFrame {
   vec4 cell_low;    // xyz: corner of its cells [m]; w: cells per metre
   uvec4 cell_count; // xyz: cells; w: number of its first triangle
+  uvec4 images;     // x: see ImageMapTexture::first()
 };
 const uint kMostKinds = 64u;
 layout(std140, binding = 2) uniform KindFrames { KindFrame kind_frames[kMostKinds]; };

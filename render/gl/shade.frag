@@ -12,6 +12,10 @@ layout(binding = 7) uniform usamplerBuffer triangles;  // two texels of bits for
 layout(binding = 8) uniform sampler2D sky_radiance;   // rows from the zenith down [1/sr]
 layout(binding = 9) uniform sampler2D ground_sky;     // irradiance of the ground by the sky, per band [1]
 
+#ifdef MAPS
+layout(binding = 17) uniform samplerBuffer image_maps;  // two texels of each triangle of kinds with maps: u, v
+#endif
+
 #ifdef FIELD
 layout(binding = 14) uniform usamplerBuffer field_places;  // of each triangle, as `triangles`
 layout(binding = 15) uniform samplerBuffer field_light;    // irradiance of the front and the back of each place
@@ -53,6 +57,29 @@ struct Place {
   Surface surface;
 };
 
+// (R37) What of the maps a pixel shows of a leaf.
+//   there   in the prototype's frame [m]
+//   away    from the line of sight's start [m]
+//   cosine  of the line of sight to the leaf's normal
+uint placeInMaps(uint kind, uint triangle, vec3 there, Sight look, float away, float cosine) {
+  uint place = kNoLeafPlace;
+#ifdef MAPS
+  uint first = kind_frames[kind].images.x;
+  // Leaves that differ by side alone need no images.
+  if (kinds[kind].maps.x == 1u && kinds[kind].maps.y == 1u) place = leafPlace(kind, vec2(0.0), 1.0);
+  else if (first != 0u) {
+    int texel = 2 * int(first - 1u + triangle);
+    vec4 u = texelFetch(image_maps, texel), v = texelFetch(image_maps, texel + 1);
+    float side = length(pixel_right.xyz);  // of the pixel there [m]
+    if (eye.w > 0.0) side *= away * dot(look.along, sight.xyz) / dot(corner.xyz, sight.xyz);
+    float images = side * side / max(abs(cosine), 1.0e-3) * length(cross(u.xyz, v.xyz));
+    vec2 at = vec2(dot(u.xyz, there) + u.w, dot(v.xyz, there) + v.w);
+    if (dot(u.xyz, u.xyz) > 0.0) place = leafPlace(kind, at, images * float(kinds[kind].maps.x * kinds[kind].maps.y));
+  }
+#endif
+  return place;
+}
+
 Place placeOnTree(uint triangle, Standing stands, Tree tree, Sight look) {
   int texel = 2 * int(kind_frames[tree.kind].cell_count.w + triangle);
   vec4 plane = uintBitsToFloat(texelFetch(triangles, texel));
@@ -74,7 +101,9 @@ Place placeOnTree(uint triangle, Standing stands, Tree tree, Sight look) {
   place.away = away;
   place.coverage = 1.0;
   if (slant > 0.0) normal = -normal;
-  place.surface = leafSurface(tree.kind, stands.tree, of_piece.w, normal, -look.along);
+  uint shown = kNoLeafPlace;
+  if (is_leaf) shown = placeInMaps(tree.kind, triangle, there, look, away, slant);
+  place.surface = leafSurface(tree.kind, shown, slant <= 0.0, stands.tree, of_piece.w, normal, -look.along);
   if (!is_leaf) place.surface = woodSurface(tree.kind, stands.tree, normal, -look.along);
   return place;
 }

@@ -19,6 +19,16 @@ vec4 modelNumbers(uint number) { return texelFetch(model_numbers, int(number)); 
 #define GLOSSY true
 #endif
 
+// The same of maps, which a unit more holds where MAPS is told.
+#ifdef MAPS
+#define MAPPED true
+layout(binding = 16) uniform samplerBuffer leaf_places;  // see LeafPlaceTexture
+vec4 leafNumbers(uint kind, uint place, uint group) { return texelFetch(leaf_places, int(place * kLeafPlaceGroups + group)); }
+#else
+#define MAPPED false
+vec4 leafNumbers(uint kind, uint place, uint group) { return vec4(0.0); }
+#endif
+
 #include "render/shading/surface.glsl"
 #include MODEL
 #include "render/shading/shade.glsl"

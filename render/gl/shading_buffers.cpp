@@ -37,7 +37,7 @@ ShadingBuffers::ShadingBuffers(const ShadingData& data)
       }()),
       gloss_tables_(BufferTexture::Texel::r32f, "the tables of leaves' gloss take"),
       model_numbers_(BufferTexture::Texel::rgba32f, "the tables of the model take") {
-  gloss_tables_.assign(std::span<const float>(data.gloss_tables));
+  gloss_tables_.assign(std::span<const float>(data.leaf_tables->gloss_tables));
   model_numbers_.assign(std::span<const glm::vec4>(data.constants));
 }
 

@@ -49,6 +49,8 @@ Sent StandData::update(const DrawnStand& stand) {
   Sent sent;
   lights_ = stand.lights;
   sent.meshes = updateMeshes(stand);
+  sent.leaves = updateLeaves(stand);
+  sendKindFrames(stand);
   sent.maps = maps_.update(stand);
   sent.cells = cells_.update(stand);
   sent.sky = updateSky(stand);
@@ -105,14 +107,26 @@ std::size_t StandData::updateMeshes(const DrawnStand& stand) {
     for (std::size_t i = 0; i < kinds_.size(); ++i) kinds_[i].mesh = stand.kinds[i].tree.mesh;
     sent += count * sizeof(TriangleData);
   }
+  return sent;
+}
+
+// Of leaf maps: what they say, and where the triangles lie in them.
+std::size_t StandData::updateLeaves(const DrawnStand& stand) {
+  leaf_tables_ = shading::leafTables(tree_kinds_, leaf_tables_);
+  std::vector<std::shared_ptr<const TreeLevels>> levels;
+  for (const Kind& kind : kinds_) levels.push_back(kind.levels);
+  return leaf_places_.update(*leaf_tables_) + image_maps_.update(stand, levels);
+}
+
+void StandData::sendKindFrames(const DrawnStand& stand) {
   std::vector<KindFrame> frames(std::max<std::size_t>(kinds_.size(), 1));
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const DrawnCells& cells = stand.kinds[i].cells;
     frames[i] = {.cell_low = glm::vec4(cells.low, 1.f / cells.cell_size),
-                 .cell_count = glm::uvec4(glm::uvec3(glm::max(cells.size, glm::ivec3(1))), first_triangle_[i])};
+                 .cell_count = glm::uvec4(glm::uvec3(glm::max(cells.size, glm::ivec3(1))), first_triangle_[i]),
+                 .images = {image_maps_.first(i), 0u, 0u, 0u}};
   }
   kind_frames_.write(0, std::as_bytes(std::span(frames)));
-  return sent;
 }
 
 std::size_t StandData::updateSky(const DrawnStand& stand) {
@@ -245,6 +259,9 @@ void StandData::bind() const {
   trees_.bind(12);
   drawn_.bind(13);
   field_.bind(14, 15);
+  if (!leaf_tables_->mapped()) return;
+  leaf_places_.bind(16);
+  image_maps_.bind(17);
 }
 
 }  // namespace sunfleck::gl

@@ -12,16 +12,20 @@
 #include "render/gl/detail/frame_data.hpp"
 #include "render/gl/drawn_stand.hpp"
 #include "render/gl/field_texture.hpp"
+#include "render/gl/image_map_texture.hpp"
+#include "render/gl/leaf_place_texture.hpp"
 #include "render/gl/map_pool.hpp"
 #include "render/gl/radiance_texture.hpp"
 #include "render/gl/tree_levels.hpp"
 #include "render/gl/tree_mesh_buffers.hpp"
+#include "render/shading/leaf_tables.hpp"
 
 namespace sunfleck::gl {
 
 // What an update sent to the graphics card [byte].
 struct Sent {
-  std::size_t meshes = 0, maps = 0, trees = 0, cells = 0, sky = 0, field = 0;
+  std::size_t meshes = 0, maps = 0, trees = 0, cells = 0, sky = 0, field = 0, leaves = 0;
+  std::size_t all() const { return meshes + maps + trees + cells + sky + field + leaves; }
 };
 
 // The ground's disc [m].
@@ -52,6 +56,8 @@ class StandData {
   const std::vector<Kind>& kinds() const { return kinds_; }
   const std::vector<TreeKind>& treeKinds() const { return tree_kinds_; }
   const std::vector<DrawnLight>& lights() const { return lights_; }
+  // For shading by any model.
+  const std::shared_ptr<const shading::LeafTables>& leafTables() const { return leaf_tables_; }
   bool litBySky() const { return lit_by_sky_; }
   // A drawn tree by its number.
   struct Seen {
@@ -65,6 +71,8 @@ class StandData {
 
  private:
   std::size_t updateMeshes(const DrawnStand& stand);
+  std::size_t updateLeaves(const DrawnStand& stand);
+  void sendKindFrames(const DrawnStand& stand);
   std::size_t updateSky(const DrawnStand& stand);
   std::size_t updateTrees(const DrawnStand& stand);
   void placeGround(const DrawnStand& stand);
@@ -77,6 +85,9 @@ class StandData {
   MapPool maps_;
   CellAtlas cells_;
   FieldTexture field_;
+  std::shared_ptr<const shading::LeafTables> leaf_tables_ = std::make_shared<const shading::LeafTables>();
+  LeafPlaceTexture leaf_places_;
+  ImageMapTexture image_maps_;
   RadianceTexture sky_, ground_sky_;
   std::shared_ptr<const SkyMap> sent_sky_;
   std::uint64_t sent_ground_sky_ = 0;

@@ -62,7 +62,7 @@ struct StandRenderer::Programs {
   // What a shading program is made for.
   struct Purpose {
     Model model;
-    bool layers, one_kind, one_light, gloss, sky;
+    bool layers, one_kind, one_light, gloss, maps, sky;
     auto operator<=>(const Purpose&) const = default;
   };
   std::map<Purpose, Program> shading;
@@ -80,6 +80,7 @@ struct StandRenderer::Programs {
       if (purpose.one_kind) define(shader, "ONE_KIND", "1");
       if (purpose.one_light) define(shader, "LIGHTS", "1u");
       if (!purpose.gloss) define(shader, "GLOSSY", "false");
+      if (purpose.maps) define(shader, "MAPS", "1");
       if (!purpose.sky) define(shader, "NO_SKY", "1");
       found = shading.emplace(purpose, Program({shaderOf(Stage::vertex, "render/gl/screen.vert"), shader})).first;
     }
@@ -88,6 +89,7 @@ struct StandRenderer::Programs {
   const ShadingBuffers& buffersOf(Model model, const StandData& stand) {
     auto found = buffers.find(model);
     if (found == buffers.end()) {
+      data[model].leaf_tables = stand.leafTables();
       sunfleck::shading::update(data[model], model, stand.treeKinds(), shadingLights(stand.lights()), exact);
       found = buffers.emplace(model, ShadingBuffers(data[model])).first;
     }
@@ -203,6 +205,7 @@ FrameCost StandRenderer::shade(const View& view, FrameTarget& target, FrameCost 
                       .one_kind = data_.kinds().size() == 1,
                       .one_light = data_.lights().size() == 1,
                       .gloss = buffers.gloss(),
+                      .maps = data_.leafTables()->mapped(),
                       .sky = data_.litBySky()})
         .use();
     glBindVertexArray(programs_->no_array.get());

@@ -52,6 +52,11 @@ Primitives paired(std::span<const glm::uvec3> triangles, std::span<const std::ui
 
 using namespace detail;
 
+const glm::vec3* detail::verticesOf(RTCScene scene, unsigned number) {
+  return static_cast<const glm::vec3*>(
+      rtcGetGeometryBufferData(rtcGetGeometry(scene, number), RTC_BUFFER_TYPE_VERTEX, 0));
+}
+
 std::vector<Facet> RayScene::Geometry::facets(std::uint32_t kind) const {
   std::vector<Facet> facets;
   const Prototype& prototype = prototypes[kind];
@@ -60,7 +65,7 @@ std::vector<Facet> RayScene::Geometry::facets(std::uint32_t kind) const {
     const std::size_t count = number == kLeaves ? leaves : prototype.planes.size() - leaves;
     if (count == 0) continue;
     const RTCGeometry geometry = rtcGetGeometry(scenes.prototypes[kind].get(), number);
-    const auto* vertices = static_cast<const glm::vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    const glm::vec3* vertices = verticesOf(scenes.prototypes[kind].get(), number);
     const auto* corners =
         static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
     const std::size_t each = (number == kLeaves ? prototype.leaf_quads : prototype.wood_quads) ? 4 : 3;

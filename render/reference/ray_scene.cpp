@@ -25,20 +25,20 @@ void keepFirstError(void* text, RTCError code, const char* message) {
 
 // Takes back hits where a mask cuts the leaf away: the ray goes on.
 void passCutLeaves(const RTCFilterFunctionNArguments* arguments) {
-  const auto& cuts = *static_cast<const CutLeaves*>(arguments->geometryUserPtr);
+  const auto& images = *static_cast<const LeafImages*>(arguments->geometryUserPtr);
   for (unsigned i = 0; i < arguments->N; ++i) {
     if (arguments->valid[i] == 0) continue;
-    const std::uint32_t number = cuts.patch_of_triangle[RTCHitN_primID(arguments->hit, arguments->N, i)];
-    if (number == TreeMesh::kNoPatch || cuts.patches[number].mask == LeafPatch::kNoMask) continue;
-    const LeafPatch& patch = cuts.patches[number];
+    const std::uint32_t number = images.patch_of_triangle[RTCHitN_primID(arguments->hit, arguments->N, i)];
+    if (number == TreeMesh::kNoPatch || images.patches[number].mask == LeafPatch::kNoMask) continue;
+    const LeafPatch& patch = images.patches[number];
     const float u = RTCHitN_u(arguments->hit, arguments->N, i), v = RTCHitN_v(arguments->hit, arguments->N, i);
-    if (!cuts.masks[patch.mask]->at(patch.corners, u, v)) arguments->valid[i] = 0;
+    if (!images.masks[patch.mask]->at(patch.corners, u, v)) arguments->valid[i] = 0;
   }
 }
 
 // `cuts`: none where the triangles are whole.
 void attachPrimitives(RTCDevice device, RTCScene scene, unsigned number, const std::vector<glm::vec3>& vertices,
-                      const Primitives& primitives, const glm::vec3& pivot, CutLeaves* cuts = nullptr) {
+                      const Primitives& primitives, const glm::vec3& pivot, LeafImages* cuts = nullptr) {
   const std::size_t count = primitives.first_triangle.size();
   if (count == 0) return;
   RTCGeometry geometry =
@@ -149,10 +149,14 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
     EmbreeScene& scene = made.emplace_back(rtcNewScene(device.get()));
     Prototype& prototype = prototypes.emplace_back();
     const glm::vec3& pivot = placed.pivots[kind];
-    if (!mesh.masks.empty()) prototype.cuts.reset(new CutLeaves{mesh.masks, mesh.patches, mesh.patch_of_triangle});
+    if (!mesh.patch_of_triangle.empty())
+      prototype.images.reset(new LeafImages{.masks = mesh.masks,
+                                            .patches = mesh.patches,
+                                            .patch_of_triangle = mesh.patch_of_triangle,
+                                            .triangles = mesh.leaf_triangles});
     const auto attach = [&](unsigned number, const std::vector<glm::uvec3>& triangles, const Primitives& primitives) {
       attachPrimitives(device.get(), scene.get(), number, mesh.vertices, primitives, pivot,
-                       number == kLeaves ? prototype.cuts.get() : nullptr);
+                       number == kLeaves && prototype.cut() ? prototype.images.get() : nullptr);
       for (std::size_t i = 0; i < primitives.first_triangle.size(); ++i) {
         const std::uint32_t first = primitives.first_triangle[i];
         const std::size_t before = number == kWood ? mesh.leaf_triangles.size() : 0;
@@ -162,9 +166,10 @@ RayScene::Geometry::Geometry(std::span<const TreeMesh* const> kinds, const Stand
       }
     };
     const Primitives leaves =
-        prototype.cuts ? alone(mesh.leaf_triangles) : paired(mesh.leaf_triangles, mesh.leaf_of_triangle);
+        prototype.cut() ? alone(mesh.leaf_triangles) : paired(mesh.leaf_triangles, mesh.leaf_of_triangle);
     prototype.leaf_quads = leaves.quads();
     attach(kLeaves, mesh.leaf_triangles, leaves);
+    if (prototype.images) prototype.images->vertices = verticesOf(scene.get(), kLeaves);
     const Primitives wood = with_wood ? paired(mesh.wood_triangles, {}) : Primitives{};
     prototype.wood_quads = wood.quads();
     attach(kWood, mesh.wood_triangles, wood);
@@ -233,7 +238,9 @@ Hit RayScene::Geometry::describe(const Met& met, const glm::vec3& from, const gl
           .leaf = met.leaf ? prototype.leaf_of_primitive[met.primitive] : 0,
           .position = travelled - (glm::dot(normal, travelled) - distance) * normal,
           .front = front,
-          .normal = front ? normal : -normal};
+          .normal = front ? normal : -normal,
+          .copy = met.copy,
+          .primitive = met.primitive};
 }
 
 Met RayScene::Geometry::metBy(const RTCHit& hit, float distance) const {

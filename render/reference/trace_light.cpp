@@ -32,8 +32,9 @@ void validate(const TraceLight& light) {
     validate(tree.leaf);
     require(tree.wood_reflectance >= 0.f && tree.wood_reflectance <= 1.f, "wood reflectance", tree.wood_reflectance,
             "in [0, 1]");
+    require(tree.map_band >= 0 && tree.map_band < kBands, "band of the leaf maps", tree.map_band, "0, 1 or 2");
   };
-  validateTree({light.leaf, light.wood_reflectance});
+  validateTree({.leaf = light.leaf, .wood_reflectance = light.wood_reflectance});
   for (const TreeOptics& tree : light.of_kinds) validateTree(tree);
   for (const LeafOptics& medium : light.of_media) validate(medium);
   require(light.ground_albedo >= 0.f && light.ground_albedo <= 1.f, "ground albedo", light.ground_albedo, "in [0, 1]");
@@ -69,10 +70,15 @@ void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene)
     };
     if (light.ground_rpv.has_value() != first.ground_rpv.has_value() || shape(light) != shape(first))
       throw InvalidInput("ground: must be of the same kind in all bands, a texture of the same size");
-    for (std::uint32_t kind = 0; kind < kinds; ++kind)
+    for (std::uint32_t kind = 0; kind < kinds; ++kind) {
       require(light.ofKind(kind).leaf.gloss_roughness == first.ofKind(kind).leaf.gloss_roughness,
               "leaf gloss_roughness", light.ofKind(kind).leaf.gloss_roughness, "the same in all bands");
+      if (light.ofKind(kind).maps != first.ofKind(kind).maps)
+        throw InvalidInput("leaf maps: must be the same in all bands");
+    }
   }
+  for (std::uint32_t kind = 0; kind < kinds; ++kind)
+    if (const TreeOptics tree = bands.front().ofKind(kind); tree.maps) validate(*tree.maps, "leaf maps");
 }
 
 }  // namespace sunfleck

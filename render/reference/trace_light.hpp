@@ -7,6 +7,7 @@
 
 #include "core/directions.hpp"
 #include "core/ground_texture.hpp"
+#include "core/leaf_maps.hpp"
 #include "core/leaf_optics.hpp"
 #include "render/reference/ray_scene.hpp"
 #include "scattering/rpv_ground.hpp"
@@ -18,6 +19,10 @@ namespace sunfleck {
 struct TreeOptics {
   LeafOptics leaf{};
   float wood_reflectance = 0.3f;  // Lambertian [1], 0 .. 1
+  // What leaves do at each place and on each side where they are not all alike, in all bands of a run the same; `leaf`
+  // then is what those do of which the place is not known.
+  std::shared_ptr<const LeafMaps> maps{};
+  int map_band = 0;  // which of the maps' bands this band of light is
 };
 
 // One band of light, the sun and the sky that send it and what it meets.
@@ -41,7 +46,7 @@ struct TraceLight {
   // The largest share of light that the ground sends back from any direction [1].
   float largestGroundAlbedo() const;
   TreeOptics ofKind(std::uint32_t kind) const {
-    return of_kinds.empty() ? TreeOptics{leaf, wood_reflectance} : of_kinds[kind];
+    return of_kinds.empty() ? TreeOptics{.leaf = leaf, .wood_reflectance = wood_reflectance} : of_kinds[kind];
   }
 };
 
@@ -55,7 +60,7 @@ inline constexpr float kLeastSunDiameter = 0.00436332f, kMostSunDiameter = 1.047
 // vector, and on a band without light.
 void validate(const TraceLight& light);
 // Validates all bands; demands 1 to kMostBands of one sun and one sky, with optics of each kind of tree and of each
-// medium; the gloss of a kind must be as rough in all bands.
+// medium; the gloss of a kind must be as rough in all bands, and its maps, which are validated, the same.
 void requireFitting(const std::vector<TraceLight>& bands, const RayScene& scene);
 
 }  // namespace sunfleck

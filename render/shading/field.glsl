@@ -6,12 +6,12 @@ Scattered scatteredLight(Surface surface, Foliage foliage, float thickness, floa
 
 //   same, other  irradiance of the side that is seen and of the one beyond, per band
 Shaded shadeBySides(Surface surface, vec3 same, vec3 other) {
-  vec3 reflected = vec3(0.0f), entering = vec3(1.0f);
+  vec3 reflected = vec3(0.0f);
   if (surface.roughness > 0.0f) {
     Gloss gloss = glossSeen(surface);
-    vec3 let_in = vec3(kinds[surface.kind].gloss_entering);
-    reflected = (0.3183098861837907f * gloss.albedo) * gloss.intensity * same;
-    entering = gloss.entering * let_in;
+    reflected = (0.3183098861837907f * gloss.albedo) * surface.gloss * same;
+    same *= gloss.entering * gloss.let_in;
+    other *= gloss.passing * gloss.let_in_beyond;
   }
   Shaded shaded;
   shaded.direct = vec3(0.0f);
@@ -23,6 +23,6 @@ Shaded shadeBySides(Surface surface, vec3 same, vec3 other) {
     sides.other = other[band];
     shaded.scattered[band] = lambertRadiance(sides, surface.reflectance[band], surface.transmittance[band]);
   }
-  shaded.scattered = reflected + entering * shaded.scattered;
+  shaded.scattered += reflected;
   return shaded;
 }

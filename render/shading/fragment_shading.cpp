@@ -1,5 +1,6 @@
 #include "render/shading/fragment_shading.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "spp/power_table.hpp"
@@ -9,6 +10,7 @@ namespace sunfleck::shading {
 
 using Number = float;
 using glm::dot;
+using glm::floor;
 using glm::max;
 using glm::min;
 using glm::normalize;
@@ -21,7 +23,7 @@ using std::abs, std::erfc, std::exp, std::sqrt;
 class FragmentShading::Text : public spp::StreamFormulas<float> {
  public:
   explicit Text(const ShadingData& data)
-      : kinds(data.kinds), lights(data.lights), gloss_tables(data.gloss_tables), model_numbers(data.constants) {}
+      : kinds(data.kinds), lights(data.lights), leaf_tables(data.leaf_tables), model_numbers(data.constants) {}
   virtual ~Text() = default;
   virtual Shaded shadeByLight(Surface, Foliage, float, float, uint) = 0;
   virtual Shaded shadeBySky(Surface, vec3) = 0;
@@ -29,11 +31,16 @@ class FragmentShading::Text : public spp::StreamFormulas<float> {
 
   std::vector<KindOptics> kinds;
   std::vector<ShadingLight> lights;
-  std::vector<float> gloss_tables;
+  std::shared_ptr<const LeafTables> leaf_tables;
   std::vector<vec4> model_numbers;
-  float glossTableNumber(uint number) const { return gloss_tables[number]; }
+  float glossTableNumber(uint number) const { return leaf_tables->gloss_tables[number]; }
+  vec4 leafNumbers(uint kind, uint place, uint group) const {
+    const LeafTables::OfKind& of = leaf_tables->kinds[kind];
+    return of.pyramid->numbers[std::size_t{kLeafPlaceGroups} * (place - of.first_place) + group];
+  }
   vec4 modelNumbers(uint number) const { return model_numbers[number]; }
 #define GLOSSY true
+#define MAPPED true
 #define SHARED_FN static inline
 #define SHARED_CONSTANT static constexpr
 #include "render/shading/surface.glsl"
@@ -88,8 +95,12 @@ FragmentShading::FragmentShading(Model model, const ShadingData& data)
     : text_(Texts::of(model, data)), lights_(static_cast<uint>(data.lights.size())) {}
 FragmentShading::~FragmentShading() = default;
 
-Surface FragmentShading::leafSurface(uint kind, uint tree, uint leaf, const vec3& normal, const vec3& to_eye) const {
-  return text_->leafSurface(kind, tree, leaf, normal, to_eye);
+uint FragmentShading::leafPlace(uint kind, const vec2& at, float places) const {
+  return text_->leafPlace(kind, at, places);
+}
+Surface FragmentShading::leafSurface(uint kind, const SeenLeaf& seen, uint tree, uint leaf, const vec3& normal,
+                                     const vec3& to_eye) const {
+  return text_->leafSurface(kind, seen.place, seen.front, tree, leaf, normal, to_eye);
 }
 Surface FragmentShading::woodSurface(uint kind, uint tree, const vec3& normal, const vec3& to_eye) const {
   return text_->woodSurface(kind, tree, normal, to_eye);

@@ -30,13 +30,22 @@ struct Fragment {
   vec3 sky{0.f};  // mean radiance of the environment's light there (D10), per band
 };
 
+// (R37) What is seen of a leaf that is not alike everywhere.
+struct SeenLeaf {
+  uint place = kNoLeafPlace;  // of the maps; by default the mean leaf
+  bool front = true;          // whether the upper side is seen, about which the corners turn counter-clockwise
+};
+
 // (R27) Shades fragments on the processor, by the text that the graphics card shades by. Any thread may ask it.
 class FragmentShading {
  public:
   FragmentShading(Model model, const ShadingData& data);
   ~FragmentShading();
 
-  Surface leafSurface(uint kind, uint tree, uint leaf, const vec3& normal, const vec3& to_eye) const;
+  // (R37) The place of a point of the leaf's images, where a pixel shows so many places of the full size.
+  uint leafPlace(uint kind, const vec2& at, float places) const;
+  Surface leafSurface(uint kind, const SeenLeaf& seen, uint tree, uint leaf, const vec3& normal,
+                      const vec3& to_eye) const;
   Surface woodSurface(uint kind, uint tree, const vec3& normal, const vec3& to_eye) const;
   Surface groundSurface(uint kind, const vec3& albedo, const vec3& normal, const vec3& to_eye) const;
 

@@ -20,8 +20,8 @@ Shaded shadeBySky(Surface surface, vec3 sky) {
   shaded.scattered = sky * (surface.reflectance + surface.transmittance);
   if (surface.roughness > 0.0f) {
     Gloss gloss = glossSeen(surface);
-    vec3 reflected = gloss.albedo * gloss.intensity;
-    shaded.scattered = reflected * sky + (vec3(1.0f) - reflected) * shaded.scattered;
+    shaded.scattered = sky * (gloss.albedo * surface.gloss + gloss.entering * gloss.let_in * surface.reflectance +
+                              gloss.passing * gloss.let_in_beyond * surface.transmittance);
   }
   return shaded;
 }

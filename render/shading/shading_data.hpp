@@ -1,20 +1,26 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "render/model.hpp"
 #include "render/scene.hpp"
+#include "render/shading/leaf_tables.hpp"
 #include "render/shading/shading_model.hpp"
 #include "render/stand_geometry.hpp"
 
 // The C++ face of the shading text's types (surface_types.glsl).
 namespace sunfleck::shading {
 
+using glm::uvec2;
+using glm::uvec4;
+using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 using uint = std::uint32_t;
@@ -28,8 +34,8 @@ struct ShadingData {
   std::vector<BandOptics> leaves;  // of each kind
   std::vector<KindOptics> kinds;
   std::vector<ShadingLight> lights;
-  std::vector<float> gloss_tables;  // of each kind; nothing where none has a gloss
-  std::vector<vec4> constants;      // the model's own (shading_model.hpp)
+  std::shared_ptr<const LeafTables> leaf_tables;  // the same for all models, which may share them
+  std::vector<vec4> constants;                    // the model's own (shading_model.hpp)
 };
 
 // Brings the data up to date; what depends on leaves and model alone stays while these do.

@@ -5,13 +5,20 @@ const uint kMostShadingLights = 4u;
 
 // What a kind of tree does to light, per band [1].
 struct KindOptics {
-  vec4 leaf_reflectance;
+  vec4 leaf_reflectance;    // of the mean leaf, alike on both sides; w: roughness of the gloss, 0 where no leaf has one
   vec4 leaf_transmittance;
-  vec4 leaf_gloss;    // intensity rho_s (R20); w: roughness, 0 for leaves without a gloss
-  vec4 gloss_entering;  // mean share that such a gloss lets in
+  vec4 leaf_gloss;          // intensity rho_s (R20); w: number of the gloss's table among the kind's
   vec4 wood_reflectance;
   vec4 slab_rate, slab_loss, slab_backward;  // SppRates of its leaves, lit along the slab's normal (S2)
+  uvec4 maps;  // x, y: places of its leaves' maps across and down, 0: there are none; z: number of the first place;
+               // w: of the first table of its leaves' gloss
 };
+
+// (R37) A place of maps: so many groups of four numbers. First the transmittance; then of the upper and the lower side
+// the reflectance with the gloss's roughness, and the intensity of the gloss with the number of its table among the
+// kind's.
+const uint kLeafPlaceGroups = 5u;
+const uint kNoLeafPlace = 0xffffffffu;  // not known: the mean leaf
 
 // A sun.
 struct ShadingLight {
@@ -24,9 +31,13 @@ struct ShadingLight {
 struct Surface {
   vec3 normal;         // on the eye's side
   vec3 to_eye;         // unit vector
-  vec3 reflectance;    // per band [1]
+  vec3 reflectance;    // of the eye's side, per band [1]
   vec3 transmittance;
-  float roughness;     // of the gloss, 0 where there is none
+  float roughness;     // of the gloss on the eye's side, 0 where no side has one
+  vec3 gloss;          // its intensity, per band [1]
+  vec3 gloss_beyond;   // that of the other side
+  uint gloss_table;
+  uint gloss_table_beyond;
   uint kind;           // whose leaves make the slab around it
   uint tree;           // of the stand; for models that know each leaf
   uint leaf;           // of the tree; 0xffffffff for wood and ground

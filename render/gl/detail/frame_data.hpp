@@ -46,6 +46,7 @@ struct Standing {
 struct KindFrame {
   glm::vec4 cell_low{0.f, 0.f, 0.f, 1.f};
   glm::uvec4 cell_count{1u, 1u, 1u, 0u};
+  glm::uvec4 images{0u};
 };
 
 struct MapFrame {

@@ -15,8 +15,9 @@
 
 namespace sunfleck::detail {
 
-// Fowler, Noll and Vo's hash (1a, 64 bits) of the numbers' bytes.
-inline std::uint64_t hashOf(const std::vector<float>& values) {
+// Fowler, Noll and Vo's hash (1a, 64 bits) of the values' bytes.
+template <typename T>
+std::uint64_t hashOf(const std::vector<T>& values) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const std::byte byte : std::as_bytes(std::span(values)))
     hash = (hash ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3u;
@@ -51,9 +52,28 @@ inline TraceIdentity identityOf(const std::vector<TraceLight>& bands) {
   return {{"light", light}, {"sun", fmt::format("{} {} {}", sun.x, sun.y, sun.z)}, {"optics", optics}};
 }
 
-// The same in a scene, with what is in its media.
+// What leaves do at each place, where there are maps, and which triangles show which.
+inline std::string mapsText(const std::vector<TraceLight>& bands, const RayScene::Geometry& scene) {
+  static_assert(sizeof(LeafPlace) == 17 * 4 && sizeof(LeafPatch) == 7 * 4, "no byte between their numbers is hashed");
+  std::string text;
+  for (std::uint32_t kind = 0; kind < scene.prototypes.size(); ++kind) {
+    const std::shared_ptr<const LeafMaps> maps = bands.front().ofKind(kind).maps;
+    if (!maps) continue;
+    text += fmt::format("kind {}: {} x {} {:016x} {:016x}", kind, maps->width, maps->height, hashOf(maps->places),
+                        hashOf(maps->roughnesses));
+    for (const TraceLight& light : bands) text += fmt::format(" {}", light.ofKind(kind).map_band);
+    if (const LeafImages* images = scene.prototypes[kind].images.get())
+      text += fmt::format(", shown by {:016x} {:016x}", hashOf(images->patches), hashOf(images->patch_of_triangle));
+    text += "; ";
+  }
+  return text;
+}
+
+// The same in a scene, with what is in its media and in the images of its leaves.
 inline TraceIdentity identityOf(const std::vector<TraceLight>& bands, const RayScene::Geometry& scene) {
   TraceIdentity identity = identityOf(bands);
+  const std::string maps = mapsText(bands, scene);
+  if (!maps.empty()) identity["leaf maps"] = maps;
   if (scene.media.empty()) return identity;
   identity["media"] = scene.media_hash;
   for (const TraceLight& light : bands)

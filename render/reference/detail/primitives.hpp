@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "render/reference/detail/embree_calls.hpp"
+
 namespace sunfleck::detail {
 
 inline constexpr unsigned kLeaves = 0, kWood = 1;  // Embree's geometry numbers
@@ -20,6 +22,9 @@ struct Primitives {
   bool quads() const { return each == 4; }
   bool pair(std::size_t i) const { return quads() && corners[4 * i + 2] != corners[4 * i + 3]; }
 };
+
+// As Embree has them.
+const glm::vec3* verticesOf(RTCScene scene, unsigned number);
 
 Primitives alone(std::span<const glm::uvec3> triangles);
 // As quads where most triangles have an edge in common with the one that follows, of the same leaf and facing the same

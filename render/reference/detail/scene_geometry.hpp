@@ -36,6 +36,7 @@ struct Hit {
   glm::vec3 position{0.f};  // on the surface; in a periodic stand inside the traced period [m]
   bool front = true;        // whether the ray came from the side that the corners turn about counter-clockwise
   glm::vec3 normal{0.f};    // unit, geometric, on the side the ray came from; of a particle: back along the ray
+  std::uint32_t copy = 0, primitive = 0;  // when a leaf: of the stand's trees, and among the leaves of its kind
 };
 
 struct ReleaseDevice {
@@ -54,11 +55,14 @@ struct Scenes {
   RTCScene root() const { return instances ? instances.get() : prototypes.front().get(); }
 };
 
-// What Embree's filter asks whether a leaf triangle is cut away where a ray meets it.
-struct CutLeaves {
+// Where leaf triangles lie in the images of their leaf, also what Embree's filter asks whether one is cut away where a
+// ray meets it.
+struct LeafImages {
   std::vector<std::shared_ptr<const LeafMask>> masks;
   std::vector<LeafPatch> patches;
-  std::vector<std::uint32_t> patch_of_triangle;
+  std::vector<std::uint32_t> patch_of_triangle;  // or TreeMesh::kNoPatch
+  std::vector<glm::uvec3> triangles;             // corners
+  const glm::vec3* vertices = nullptr;           // Embree's, about the kind's pivot [m]
 };
 
 // What a hit on a kind of tree is looked up in. A primitive is what Embree tests as one: a triangle, or two.
@@ -68,7 +72,8 @@ struct Prototype {
   std::vector<std::uint32_t> first_triangle;     // of each primitive, among those of the leaves and then the wood
   std::vector<std::uint32_t> leaf_of_primitive;  // among the leaves of all kinds
   bool leaf_quads = false, wood_quads = false;   // whether Embree has them as quads
-  std::unique_ptr<CutLeaves> cuts;               // where masks cut leaves out
+  std::unique_ptr<LeafImages> images;            // where any leaf triangle has a patch
+  bool cut() const { return images && !images->masks.empty(); }
 };
 
 // What a ray met of a copy, and how far away.
@@ -138,8 +143,10 @@ struct RayScene::Geometry {
   glm::vec3 wrapped(glm::vec3 point) const;  // the same point in the traced period
   RTCScene countingScene() const;            // leaves alone, watertight, with filters; made when first asked for
   bool masked() const {
-    return std::any_of(prototypes.begin(), prototypes.end(), [](const auto& of) { return of.cuts != nullptr; });
+    return std::any_of(prototypes.begin(), prototypes.end(), [](const auto& of) { return of.cut(); });
   }
+  // Where a leaf that was hit shows its images; none where that is not known.
+  std::optional<glm::vec2> inImages(const detail::Hit& hit) const;
   // What a kind of tree is made of, about its pivot.
   std::vector<detail::Facet> facets(std::uint32_t kind) const;
 

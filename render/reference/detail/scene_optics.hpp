@@ -1,16 +1,14 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <variant>
 #include <vector>
 
-#include "render/reference/detail/cosine_law.hpp"
-#include "render/reference/detail/glossy_leaf.hpp"
 #include "render/reference/detail/ground_surface.hpp"
+#include "render/reference/detail/lambert_surface.hpp"
+#include "render/reference/detail/leaf_surface.hpp"
 #include "render/reference/detail/medium_optics.hpp"
 #include "render/reference/detail/scattering.hpp"
 #include "render/reference/detail/scene_geometry.hpp"
@@ -39,18 +37,16 @@ class SceneOptics {
       }
     }
     for (std::size_t kind = 0; kind < kinds; ++kind) {
-      const auto number = static_cast<std::uint32_t>(kind);
-      if (std::none_of(bands.begin(), bands.end(), [&](const auto& b) { return b.ofKind(number).leaf.gloss > 0.f; }))
-        continue;
-      of_kinds_[kind].glossy.emplace(bands, number);
-      of_kinds_[kind].leaf = of_kinds_[kind].glossy->bounds();
+      std::optional<LeafSurface<N>>& beyond_lambert = of_kinds_[kind].beyond_lambert;
+      beyond_lambert = LeafSurface<N>::of(bands, static_cast<std::uint32_t>(kind), scene);
+      if (beyond_lambert) of_kinds_[kind].leaf = beyond_lambert->bounds();
     }
     lambert_ = !ground_beyond_lambert_ && !scene.hasParticles() &&
-               std::none_of(of_kinds_.begin(), of_kinds_.end(), [](const Kind& k) { return k.glossy.has_value(); });
+               std::ranges::none_of(of_kinds_, [](const Kind& kind) { return kind.beyond_lambert.has_value(); });
   }
 
-  // Of what was hit, nothing being the ground. Of glossy leaves and of ground not alike everywhere or in all directions
-  // it is a bound: where it is 0, nothing is sent.
+  // Of what was hit, nothing being the ground. Of leaves with a gloss or maps and of ground not alike everywhere or in
+  // all directions it tells no more than this: where it is 0, nothing is sent.
   const SurfaceOptics<N>& of(const Hit& hit) const {
     if (hit.surface == Surface::none) return ground_;
     if (hit.surface == Surface::leaf) return of_kinds_[hit.kind].leaf;
@@ -61,15 +57,11 @@ class SceneOptics {
   // What becomes of a path that met `hit`, travelling along `arriving`: where it goes on to, and with what weight.
   Onward scatter(const Hit& hit, const glm::vec3& arriving, BandLanes<N>& weight, PathRandom& random) const {
     if (!lambert_) [[unlikely]] {
-      if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->scatter(hit.normal, arriving, weight, random);
+      if (const LeafSurface<N>* leaf = leafBeyondLambert(hit)) return leaf->scatter(hit, arriving, weight, random);
       if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->scatter(hit, arriving, weight, random);
       if (hit.surface == Surface::particle) return media_.scatter(hit, weight, random);
     }
-    Onward onward{.fate = detail::scatter(of(hit), weight, random)};
-    if (onward.fate == Fate::absorbed) return onward;
-    onward.side = onward.fate == Fate::passed ? -hit.normal : hit.normal;
-    onward.direction = lambertDirection(onward.side, random);
-    return onward;
+    return LambertSurface<N>{of(hit)}.scatter(hit.normal, arriving, weight, random);
   }
 
   // The share of the light from the unit vector `to_light` that is sent back along a line of sight that met `hit`,
@@ -77,14 +69,11 @@ class SceneOptics {
   // the light's cosine [1/sr].
   BandLanes<N> sent(const Hit& hit, const glm::vec3& arriving, const glm::vec3& to_light) const {
     if (!lambert_) [[unlikely]] {
-      if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->sent(hit.normal, arriving, to_light);
+      if (const LeafSurface<N>* leaf = leafBeyondLambert(hit)) return leaf->sent(hit, arriving, to_light);
       if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->sent(hit, arriving, to_light);
       if (hit.surface == Surface::particle) return media_.sent(hit, to_light);
     }
-    const float cosine = glm::dot(hit.normal, to_light);
-    BandLanes<N> share = cosine > 0.f ? of(hit).reflectance : of(hit).transmittance;
-    share *= std::abs(cosine) * std::numbers::inv_pi_v<float>;
-    return share;
+    return LambertSurface<N>{of(hit)}.sent(hit.normal, arriving, to_light);
   }
 
   // Density of the directions that `scatter` draws for a path that arrives with this weight [1/sr]. Whoever changes the
@@ -92,26 +81,22 @@ class SceneOptics {
   float density(const Hit& hit, const glm::vec3& arriving, const BandLanes<N>& weight,
                 const glm::vec3& direction) const {
     if (!lambert_) [[unlikely]] {
-      if (const GlossyLeaf<N>* glossy = glossyAt(hit)) return glossy->density(hit.normal, arriving, weight, direction);
+      if (const LeafSurface<N>* leaf = leafBeyondLambert(hit)) return leaf->density(hit, arriving, weight, direction);
       if (isGroundBeyondLambert(hit)) return ground_beyond_lambert_->density(direction);
       if (hit.surface == Surface::particle) return media_.density(hit, direction);
     }
-    const float reflected = dot(weight, of(hit).reflectance), passed = dot(weight, of(hit).transmittance);
-    if (!(reflected + passed > 0.f)) return 0.f;
-    const float cosine = glm::dot(hit.normal, direction);
-    return (cosine > 0.f ? reflected : passed) / (reflected + passed) * std::abs(cosine) *
-           std::numbers::inv_pi_v<float>;
+    return LambertSurface<N>{of(hit)}.density(hit.normal, arriving, weight, direction);
   }
 
  private:
   struct Kind {
-    SurfaceOptics<N> leaf, wood;  // leaf: a bound where it is glossy
-    std::optional<GlossyLeaf<N>> glossy;
+    SurfaceOptics<N> leaf, wood;  // leaf: where it is beyond Lambert's law, what LeafSurface::bounds says
+    std::optional<LeafSurface<N>> beyond_lambert;
   };
-  const GlossyLeaf<N>* glossyAt(const Hit& hit) const {
+  const LeafSurface<N>* leafBeyondLambert(const Hit& hit) const {
     if (hit.surface != Surface::leaf) return nullptr;
-    const std::optional<GlossyLeaf<N>>& glossy = of_kinds_[hit.kind].glossy;
-    return glossy ? &*glossy : nullptr;
+    const std::optional<LeafSurface<N>>& leaf = of_kinds_[hit.kind].beyond_lambert;
+    return leaf ? &*leaf : nullptr;
   }
   bool isGroundBeyondLambert(const Hit& hit) const {
     return hit.surface == Surface::none && ground_beyond_lambert_.has_value();

@@ -20,6 +20,11 @@ struct Copy {
   float cosine = 1.f, sine = 0.f;  // of the rotation
 
   glm::vec3 rotated(const glm::vec3& v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z}; }
+  // The point of the prototype that stands at this place.
+  glm::vec3 inPrototype(const glm::vec3& place) const {
+    const glm::vec3 v = place - translation;
+    return {cosine * v.x + sine * v.y, cosine * v.y - sine * v.x, v.z};
+  }
 };
 
 // Whether a single tree stands where its prototype does, as it is.
