@@ -103,6 +103,7 @@ void Panels::drawLeaf(Session& session) {
   if (!std::holds_alternative<LeafByNumbers>(description))
     tellOptics(leaf, scene.bands, std::holds_alternative<LeafByContents>(description));
   LeafTextures textures = scene.kinds[kind].textures;
+  if (textures.any()) drawMadeMaps(session);
   float gloss = leaf[0].gloss, roughness = leaf[0].gloss_roughness;
   edited |= changed(ImGui::SliderFloat("gloss", &gloss, 0.f, 1.f, "%.2f"), session);
   tip("Intensity of a glossy reflection on both sides; the shares above are then of the light it lets in");

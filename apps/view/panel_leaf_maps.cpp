@@ -22,9 +22,9 @@ bool tellsGloss(LeafImage image) {
   return image == LeafImage::upper_gloss || image == LeafImage::lower_gloss;
 }
 
-// Half of the panel's width, with what it shows below.
+// A quarter of the panel's width, with what it shows below.
 void picture(const LeafThumbnails::Uploaded& thumbnail, const char* name, const char* about) {
-  constexpr float kSide = 5.8f;  // of the longer one, in heights of a letter
+  constexpr float kSide = 4.3f;  // of the longer one, in heights of a letter
   const float scale = kSide * ImGui::GetFontSize() / static_cast<float>(std::max(thumbnail.width, thumbnail.height));
   ImGui::BeginGroup();
   ImGui::Image(reinterpret_cast<ImTextureID>(std::intptr_t{thumbnail.name}),
@@ -52,6 +52,7 @@ bool Panels::drawLeafMaps(LeafTextures& textures, const TreeKind& of, Session& s
   heading("Upper side");
   drawLeafImage(LeafImage::upper, "albedo and thickness", textures, session);
   drawLeafImage(LeafImage::upper_gloss, "gloss and roughness", textures, session);
+  drawImagesOf(textures.upper);
   edited |= drawLowerSide(textures, of.told(), session);
   if (textures.upper.detail || textures.lower.detail) {
     heading("Factors of the images");
@@ -77,7 +78,6 @@ bool Panels::drawLeafMaps(LeafTextures& textures, const TreeKind& of, Session& s
       asked_for_leaf_image = false;
     }
   }
-  if (textures.any()) drawMadeMaps(session);
   return edited;
 }
 
@@ -89,7 +89,7 @@ void Panels::drawLeafImage(LeafImage image, const char* about, const LeafTexture
   std::string& file = leaf_files[static_cast<std::size_t>(image)];
   ImGui::TextDisabled("%s", about);
   const float letter = ImGui::GetFontSize();
-  ImGui::SetNextItemWidth(-6.8f * letter);
+  ImGui::SetNextItemWidth(-7.4f * letter);
   ImGui::InputText("##file", &file);
   tip(gloss
           ? "An image whose colours are the intensity of the gloss and whose alpha is its roughness, by linear values"
@@ -105,19 +105,27 @@ void Panels::drawLeafImage(LeafImage image, const char* about, const LeafTexture
   const bool remove = ImGui::Button("none");
   ImGui::EndDisabled();
   tip("The leaf without this image");
-  if (texture) {
-    picture(thumbnails.of(texture, LeafImagePart::colour), gloss ? "gloss" : "albedo",
-            fmt::format("{}, {} x {} pixels", texture->file.string(), texture->width, texture->height).c_str());
-    if (!texture->alpha.empty()) {
-      ImGui::SameLine(0.f, letter);
-      picture(thumbnails.of(texture, LeafImagePart::alpha), gloss ? "roughness" : "thickness",
-              gloss ? "Black 0.05 or below, white 1" : "Black: thinner by the relief; white: thicker by it");
-    }
-  }
   ImGui::PopID();
   if (read || remove) asked_for_leaf_image = true;
   if (read) session.attempt([&] { session.setLeafImage(kind, image, file); });
   if (remove) session.attempt([&] { session.edit(SetLeafImage{kind, image, nullptr}); });
+}
+
+void Panels::drawImagesOf(const LeafSideTextures& side) {
+  bool first = true;
+  const auto show = [&](const std::shared_ptr<const LeafTexture>& texture, LeafImagePart part, const char* name,
+                        const char* about) {
+    if (!texture || (part == LeafImagePart::alpha && texture->alpha.empty())) return;
+    if (!first) ImGui::SameLine(0.f, 0.4f * ImGui::GetFontSize());
+    first = false;
+    picture(
+        thumbnails.of(texture, part), name,
+        fmt::format("{}; {}, {} x {} pixels", about, texture->file.string(), texture->width, texture->height).c_str());
+  };
+  show(side.detail, LeafImagePart::colour, "albedo", "What multiplies the reflectance, times the factors");
+  show(side.detail, LeafImagePart::alpha, "thickness", "Black: thinner by the relief, white: thicker by it");
+  show(side.gloss, LeafImagePart::colour, "gloss", "Its intensity, white: 1");
+  show(side.gloss, LeafImagePart::alpha, "roughness", "Of the gloss, black: 0.05 or below, white: 1");
 }
 
 bool Panels::drawLowerSide(LeafTextures& textures, const BandOptics& told, Session& session) {
@@ -125,7 +133,7 @@ bool Panels::drawLowerSide(LeafTextures& textures, const BandOptics& told, Sessi
   if (textures.lower.any() || textures.underside.any()) chooses_lower_images = false;
   const std::size_t now = chooses_lower_images ? 2 : lowerWayOf(textures);
   std::size_t chosen = now;
-  if (ImGui::BeginCombo("is", kLowerWays[now])) {
+  if (ImGui::BeginCombo("told by##lower", kLowerWays[now])) {
     for (std::size_t way = 0; way < kLowerWays.size(); ++way)
       if (ImGui::Selectable(kLowerWays[way], way == now)) chosen = way;
     ImGui::EndCombo();
@@ -143,6 +151,7 @@ bool Panels::drawLowerSide(LeafTextures& textures, const BandOptics& told, Sessi
   if (chosen == 2) {
     drawLeafImage(LeafImage::lower, "albedo and thickness", textures, session);
     drawLeafImage(LeafImage::lower_gloss, "gloss and roughness", textures, session);
+    drawImagesOf(textures.lower);
   }
   if (chosen == 1) edited |= drawUnderside(textures.underside, told, session);
   return edited;
@@ -168,7 +177,7 @@ bool Panels::drawUnderside(LeafUnderside& underside, const BandOptics& told, Ses
   const LeafUnderside before = underside;
   glm::vec3 reflectance = before.reflectance.value_or(perBand(told, &LeafOptics::reflectance));
   own("##reflects", underside.reflectance, reflectance);
-  if (changed(ImGui::DragFloat3("reflectance##lower", &reflectance.x, 0.002f, 0.f, 1.f, "%.3f"), session)) {
+  if (changed(ImGui::DragFloat3("reflectance##lower", &reflectance.x, 0.002f, 0.f, 1.f, "%.2f"), session)) {
     underside.reflectance = reflectance;
     edited = true;
   }
@@ -199,11 +208,10 @@ void Panels::drawMadeMaps(const Session& session) {
   const auto& scene = session.shownScene();
   if (!scene || kind >= scene->kinds.size() || !scene->kinds[kind].maps) return;
   const TreeKind& made = scene->kinds[kind];
-  heading("What follows");
   const float letter = ImGui::GetFontSize();
   picture(thumbnails.of(made.maps, LeafMapPart::upper_reflectance), "upper",
           "What the upper side reflects at each place, beneath the gloss");
-  ImGui::SameLine(0.f, 0.5f * letter);
+  ImGui::SameLine(0.f, 0.4f * letter);
   picture(thumbnails.of(made.maps, LeafMapPart::lower_reflectance), "lower",
           "What the lower side reflects at each place, beneath the gloss");
   ImGui::SameLine(0.f, 0.5f * letter);

@@ -104,6 +104,7 @@ struct Panels {
   // What tells places and sides apart; whether numbers were edited.
   bool drawLeafMaps(LeafTextures& textures, const TreeKind& of, Session& session);
   void drawLeafImage(LeafImage image, const char* about, const LeafTextures& textures, Session& session);
+  void drawImagesOf(const LeafSideTextures& side);
   bool drawLowerSide(LeafTextures& textures, const BandOptics& told, Session& session);
   bool drawUnderside(LeafUnderside& underside, const BandOptics& told, Session& session);
   void drawMadeMaps(const Session& session);
