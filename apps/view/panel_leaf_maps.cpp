@@ -214,7 +214,7 @@ void Panels::drawMadeMaps(const Session& session) {
   ImGui::SameLine(0.f, 0.4f * letter);
   picture(thumbnails.of(made.maps, LeafMapPart::lower_reflectance), "lower",
           "What the lower side reflects at each place, beneath the gloss");
-  ImGui::SameLine(0.f, 0.5f * letter);
+  ImGui::SameLine(0.f, 0.4f * letter);
   picture(thumbnails.of(made.maps, LeafMapPart::transmittance), "through",
           "What each place lets through, the same both ways");
   if (!beginRows("mean")) return;
