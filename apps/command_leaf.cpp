@@ -6,11 +6,11 @@
 
 #include "apps/commands.hpp"
 #include "apps/csv_rows.hpp"
-#include "apps/distinct_files.hpp"
 #include "apps/leaf_maps_output.hpp"
 #include "apps/leaf_options.hpp"
 #include "apps/leaf_output.hpp"
 #include "apps/leaf_tissue.hpp"
+#include "core/distinct_files.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "leaves/prospect.hpp"
@@ -153,7 +153,7 @@ void addFitMaps(CLI::App& command, LeafCommand& leaf, const std::vector<CLI::Opt
   CLI::Option* through = command.add_option("--transmittance", leaf.maps.transmittance, "Image of what is let through");
   CLI::Option* thickness =
       command.add_option("--thickness", leaf.maps.thickness, "Mean thickness of the leaf in mm (default 0.2)")
-          ->check(numberIn(1e-6, 500., "in [1e-6, 500] mm"));
+          ->check(numberIn(0.001, 250., "in [0.001, 250] mm"));
   CLI::Option* output = command.add_option(
       "-o,--output", leaf.maps.output,
       "NAME.png (16 bits) or NAME.exr: writes NAME_upper, NAME_lower and a scene of this leaf, NAME.toml");

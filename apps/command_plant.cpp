@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
-#include "apps/distinct_files.hpp"
 #include "apps/gallery.hpp"
 #include "apps/import_options.hpp"
 #include "apps/plant_report.hpp"
 #include "apps/plant_stand.hpp"
 #include "apps/thumbnail.hpp"
 #include "apps/version.hpp"
+#include "core/distinct_files.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "grid/density_grid.hpp"

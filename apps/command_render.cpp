@@ -20,6 +20,7 @@
 #include "render/gl/opacity_map_store.hpp"
 #include "render/gl/stand_picture.hpp"
 #include "render/image_file.hpp"
+#include "render/scene_images.hpp"
 #include "render/stand_field.hpp"
 
 namespace sunfleck::apps {
@@ -148,6 +149,7 @@ int runRender(const RenderOptions& options, const RunOptions& run) {
                                  .layers = layersOf(options),
                                  .exact = exactPowerTable};
   Scene scene = readScene(options.scene, Media::refused, Treeless::taken);
+  requireNoImageOf(scene, options.output);
   apply(options.camera, scene);
   if (std::filesystem::path(options.scene.scene).extension() != ".toml") showGround(scene);  // a scene file says itself
   const Drawn result = [&] {

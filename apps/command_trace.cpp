@@ -33,6 +33,7 @@
 #include "render/reference/light_picture.hpp"
 #include "render/reference/team_run.hpp"
 #include "render/reference/trace_goal.hpp"
+#include "render/scene_images.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -405,6 +406,7 @@ int runTrace(const TraceOptions& options, const RunOptions& run) {
   if (!options.picture.empty()) requirePictureName(options.picture);
   if (!options.checkpoint.empty()) requireNamed(options.checkpoint, ".trace");
   Scene scene = readScene(options.scene, Media::taken);
+  requireNoImageOf(scene, options.picture);
   apply(options.camera, scene);
   const bool pictured = scene.camera || !options.picture.empty() || options.only_picture;
   if (options.turbid) scene = turbidScene(options, run, scene);

@@ -8,13 +8,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/distinct_files.hpp"
+#include "core/distinct_files.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
 #include "leaves/leaf_map_fit.hpp"
 #include "leaves/leaf_textures.hpp"
 #include "render/image_file.hpp"
 #include "render/leaf_texture_file.hpp"
+#include "render/toml_string.hpp"
 
 namespace sunfleck::apps {
 namespace {
@@ -22,20 +23,24 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FittedFiles {
-  fs::path upper, lower, scene;
+  fs::path upper, lower, scene;  // the second empty: none
 };
 
+// Throws unless all of them can be written, so that none is where one cannot.
 FittedFiles namesOf(const LeafMapFiles& files) {
   const fs::path output(files.output);
-  requirePictureName(output);
   const auto with = [&](const std::string& part) {
     return output.parent_path() / (output.stem().string() + part + output.extension().string());
   };
-  FittedFiles names{.upper = with("_upper"), .lower = with("_lower"), .scene = output};
+  FittedFiles names{
+      .upper = with("_upper"), .lower = files.lower_reflectance.empty() ? fs::path() : with("_lower"), .scene = output};
   names.scene.replace_extension(".toml");
-  for (const fs::path* name : {&names.upper, &names.lower})
+  requirePictureName(names.upper);
+  if (!names.lower.empty()) requirePictureName(names.lower);
+  requireWritable(names.scene);
+  for (const fs::path* name : {&names.upper, &names.lower, &names.scene})
     for (const std::string* given : {&files.upper_reflectance, &files.lower_reflectance, &files.transmittance})
-      requireOther(name->string(), *given);
+      requireOther(*name, *given);
   return names;
 }
 
@@ -103,12 +108,12 @@ std::string fitMapsReport(const LeafMapFiles& files, bool json) {
   write(names.upper, fit.gamma);
   if (lower) write(names.lower, fit.lower_gamma);
   const LeafByTissue& tissue = fit.tissue;
-  const std::string lower_key = lower ? fmt::format(", lower = \"{}\"", names.lower.filename().string()) : "";
+  const std::string lower_key = lower ? fmt::format(", lower = {}", tomlString(names.lower.filename().string())) : "";
   writeWhole(names.scene, fmt::format("# A leaf found from measured maps by sunfleck leaf --fit-maps; 1/mm and mm.\n"
                                       "[leaf]\nslab = {{ absorption = {}, scattering = {}, thickness = {} }}\n"
-                                      "maps = {{ upper = \"{}\"{}, albedo = {}, relief = {} }}\n",
+                                      "maps = {{ upper = {}{}, albedo = {}, relief = {} }}\n",
                                       list(tissue.absorption), list(tissue.scattering), tissue.thickness,
-                                      names.upper.filename().string(), lower_key, list(albedo), relief));
+                                      tomlString(names.upper.filename().string()), lower_key, list(albedo), relief));
   if (json) {
     const auto bands = [](const auto& v) { return nlohmann::json{v[0], v[1], v[2]}; };
     nlohmann::ordered_json all{{"absorption_per_mm", bands(tissue.absorption)},

@@ -14,6 +14,7 @@
 #include "core/whole_file.hpp"
 #include "leaves/measured_leaves.hpp"
 #include "render/radians.hpp"
+#include "render/toml_string.hpp"
 
 namespace sunfleck {
 namespace fs = std::filesystem;
@@ -56,24 +57,10 @@ std::string perBand(const glm::vec3& bands) {
   return bands.x == bands.y && bands.y == bands.z ? number(bands.x) : list(bands);
 }
 
-// A TOML basic string.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      result += std::string("\\") + c;
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      result += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    else
-      result += c;
-  }
-  return result + "\"";
-}
-
 std::string texts(const std::vector<std::string>& all) {
-  if (all.size() == 1) return quoted(all.front());
+  if (all.size() == 1) return tomlString(all.front());
   std::string list;
-  for (const std::string& text : all) list += (list.empty() ? "[" : ", ") + quoted(text);
+  for (const std::string& text : all) list += (list.empty() ? "[" : ", ") + tomlString(text);
   return list + "]";
 }
 
@@ -105,7 +92,7 @@ class Writer {
       : scene_(scene), folder_(fs::weakly_canonical(fs::absolute(folder))) {}
 
   std::string text() {
-    key("name", quoted(scene_.name));
+    key("name", tomlString(scene_.name));
     std::vector<char> stands(scene_.kinds.size());
     for (const Placement& tree : scene_.stand.trees) stands[tree.kind] = true;
     if (scene_.stand.trees.empty()) stands.assign(stands.size(), true);  // all may be planted again
@@ -129,7 +116,7 @@ class Writer {
     }
     for (const SavedCamera& saved : scene_.saved_cameras) {
       table("saved_camera", true);
-      key("name", quoted(saved.name));
+      key("name", tomlString(saved.name));
       writeCamera(saved.camera);
     }
     return std::move(text_);
@@ -153,13 +140,13 @@ class Writer {
   void key(const std::string& name, const std::string& value) { text_ += name + " = " + value + "\n"; }
   std::string path(const fs::path& file) const {
     const fs::path there = fs::weakly_canonical(fs::absolute(file)), from_here = there.lexically_relative(folder_);
-    return quoted((from_here.empty() ? there : from_here).generic_string());
+    return tomlString((from_here.empty() ? there : from_here).generic_string());
   }
 
   // Reflectance and transmittance, as they are told; each key with `prefix` before it.
   void writeShares(const LeafDescription& leaf, const BandOptics& optics, const std::string& prefix) {
     if (const auto* contents = std::get_if<LeafByContents>(&leaf)) {
-      if (!contents->species.empty()) key(prefix + "species", quoted(contents->species));
+      if (!contents->species.empty()) key(prefix + "species", tomlString(contents->species));
       const std::string changed = changedContents(*contents);
       if (contents->species.empty() || !changed.empty()) key(prefix + "prospect", inlineTable(changed));
     } else if (const auto* tissue = std::get_if<LeafByTissue>(&leaf)) {
@@ -228,20 +215,20 @@ class Writer {
     const TreeRecipe& recipe = kind.recipe;
     if (!recipe.species.empty()) {
       const bool by_file = fs::path(recipe.species).extension() == ".toml";
-      key("species", by_file ? path(recipe.species) : quoted(recipe.species));
+      key("species", by_file ? path(recipe.species) : tomlString(recipe.species));
       key("seed", std::to_string(recipe.seed));
     } else if (!recipe.file.empty()) {
       key("file", path(recipe.file));
       if (!recipe.rules.leaf.empty()) key("leaf", texts(recipe.rules.leaf));
       if (!recipe.rules.wood.empty()) key("wood", texts(recipe.rules.wood));
       key("scale", number(recipe.rules.scale));
-      if (recipe.rules.up != ImportRules::Up::of_format) key("up", quoted(nameOf(recipe.rules.up)));
-      if (recipe.rules.cards != ImportRules::Cards::cut) key("cards", quoted(nameOf(recipe.rules.cards)));
-      if (!recipe.rules.mesh.empty()) key("mesh", quoted(recipe.rules.mesh));
+      if (recipe.rules.up != ImportRules::Up::of_format) key("up", tomlString(nameOf(recipe.rules.up)));
+      if (recipe.rules.cards != ImportRules::Cards::cut) key("cards", tomlString(nameOf(recipe.rules.cards)));
+      if (!recipe.rules.mesh.empty()) key("mesh", tomlString(recipe.rules.mesh));
     } else {
       refuse(fmt::format("its trees \"{}\" came from no species and no file", kind.name));
     }
-    key("name", quoted(kind.name));
+    key("name", tomlString(kind.name));
     writeLeaf(kind, "leaf_");
     key("wood_reflectance", perBand(kind.wood_reflectance));
   }
@@ -276,7 +263,7 @@ class Writer {
       return;
     }
     writeShares(medium.description, medium.optics, "");
-    if (!medium.angles.empty()) key("angles", quoted(medium.angles));
+    if (!medium.angles.empty()) key("angles", tomlString(medium.angles));
   }
 
   void writeStand(bool treeless) {
@@ -291,7 +278,7 @@ class Writer {
       if (tree.position.z != 0.f) refuse("a tree stands above or below the ground");
       text_ += fmt::format("  [{}, {}", number(tree.position.x), number(tree.position.y));
       if (tree.rotation != 0.f) text_ += ", " + degrees(tree.rotation);
-      text_ += ", " + quoted(scene_.kindOf(tree).name) + "],\n";
+      text_ += ", " + tomlString(scene_.kindOf(tree).name) + "],\n";
     }
     text_ += "]\n";
   }
@@ -328,7 +315,7 @@ class Writer {
     const SceneSky& sky = scene_.sky;
     table("sky");
     constexpr std::array names{"none", "uniform", "overcast", "preetham", "image"};
-    key("kind", quoted(names[static_cast<std::size_t>(sky.kind)]));
+    key("kind", tomlString(names[static_cast<std::size_t>(sky.kind)]));
     // A list is of colours, a number keeps the sky's own.
     if (sky.kind != Kind::none && sky.irradiance) {
       const glm::vec3 irradiance(*sky.irradiance);

@@ -50,6 +50,9 @@ grep -q "thickness = 0.3 }" oak.toml || fail "oak.toml tells another thickness"
 does '"converged": true' leaf --fit-maps --upper-reflectance r.ppm --transmittance t.ppm -o ash.exr --json
 printf '[tree]\nfile = "leaf.obj"\n' | cat - oak.toml >oak_tree.toml
 does "back to the sky" trace oak_tree.toml --paths 1000 --quiet
+does 'wrote a"b_upper.png' leaf --fit-maps --upper-reflectance r.ppm --transmittance t.ppm -o 'a"b.png'
+printf '[tree]\nfile = "leaf.obj"\n' | cat - 'a"b.toml' >quoted.toml
+does "back to the sky" trace quoted.toml --paths 1000 --quiet
 printf '[tree]\nfile = "leaf.obj"\n[leaf]\nslab = { absorption = 0.5, scattering = 4.5, thickness = 0.2 }\n' >slab.toml
 does "back to the sky" trace slab.toml --paths 1000 --quiet
 
@@ -103,7 +106,16 @@ refuses "none.ppm: cannot be read" leaf --fit-maps --upper-reflectance r.ppm --t
 refuses "one.ppm: has 1 x 1 pixels: must have 2 x 2" leaf --fit-maps --upper-reflectance r.ppm --transmittance one.ppm -o x.png
 refuses "mean transmittance in red = 0: must be at least 1e-4" leaf --fit-maps --upper-reflectance r.ppm \
   --transmittance black.ppm -o x.png
-refuses "in [1e-6, 500] mm" leaf --fit-maps --upper-reflectance r.ppm --transmittance t.ppm --thickness 0 -o x.png
+refuses "in [0.001, 250] mm" leaf --fit-maps --upper-reflectance r.ppm --transmittance t.ppm --thickness 0 -o x.png
+mkdir held.toml
+refuses "held.toml: cannot be written: it is a folder" leaf --fit-maps --upper-reflectance r.ppm --transmittance t.ppm \
+  -o held.png
+cp r.ppm kept_upper.png && cp r.ppm kept.toml
+refuses "kept_upper.png: must be another file than" leaf --fit-maps --upper-reflectance kept_upper.png --transmittance t.ppm \
+  -o kept.png
+refuses "kept.toml: must be another file than" leaf --fit-maps --upper-reflectance r.ppm --transmittance kept.toml -o kept.png
+refuses "oak_upper.png: must be another file than" render oak_tree.toml -o oak_upper.png
+refuses "oak_upper.png: must be another file than" trace oak_tree.toml --picture oak_upper.png
 refuses "--tissue: thickness: must be told" leaf --tissue absorption=1,scattering=2
 refuses "--tissue: gloss: must be one of: absorption, scattering, thickness" leaf --tissue gloss=1
 refuses "--tissue: absorption = -1: must be in [0, 1e6] 1/mm" leaf --tissue absorption=-1,scattering=2,thickness=1

@@ -11,6 +11,7 @@
 
 #include "core/require.hpp"
 #include "render/image_file.hpp"
+#include "render/scene_images.hpp"
 #include "render/scene_writer.hpp"
 #include "render/stand_field.hpp"
 
@@ -236,6 +237,7 @@ void Viewer::serve(Requests& requests) {
 void Viewer::savePng(const std::filesystem::path& file, const Canvas& canvas) {
   requirePictureName(file);
   if (file.extension() != ".png") throw InvalidInput(file.string() + ": must end in .png");
+  requireNoImageOf(session_.document().scene, file);
   session_.write(file,
                  [file, size = canvas.size(), colours = canvas.read()] { writePng(file, size.x, size.y, colours); });
 }
@@ -243,6 +245,7 @@ void Viewer::savePng(const std::filesystem::path& file, const Canvas& canvas) {
 void Viewer::beginExr(const std::filesystem::path& file) {
   if (file.extension() != ".exr") throw InvalidInput(file.string() + ": must end in .exr");
   requirePictureName(file);
+  requireNoImageOf(session_.document().scene, file);
   if (exr_) throw InvalidInput(file.string() + ": must wait until " + exr_->file.string() + " is drawn");
   if (stand_ == 0) throw InvalidInput(file.string() + ": must wait until there is a picture");
   gl::PictureEffort effort{.model = model_, .samples = session_.look.samples, .layers = {}, .exact = {}};

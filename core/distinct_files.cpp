@@ -1,10 +1,10 @@
-#include "apps/distinct_files.hpp"
+#include "core/distinct_files.hpp"
 
 #include <system_error>
 
 #include "core/require.hpp"
 
-namespace sunfleck::apps {
+namespace sunfleck {
 
 void requireOther(const std::filesystem::path& output, const std::filesystem::path& other) {
   if (output.empty() || other.empty()) return;
@@ -14,4 +14,4 @@ void requireOther(const std::filesystem::path& output, const std::filesystem::pa
     throw InvalidInput(output.string() + ": must be another file than " + other.string() + ", which it would replace");
 }
 
-}  // namespace sunfleck::apps
+}  // namespace sunfleck
