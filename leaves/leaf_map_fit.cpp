@@ -1,10 +1,10 @@
 #include "leaves/leaf_map_fit.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "core/require.hpp"
 #include "leaves/leaf_textures.hpp"
@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kThickest = 4.;  // times h
 constexpr int kMostRounds = 40, kSearchRows = 64, kRefinements = 4;
+constexpr double kMostExtinction = 1e6;  // of TissueByThickness [1/mm]
 constexpr double kNearEnough = 1e-6;
 constexpr double kLeastShare = 1e-4;  // of tissueOf()
 constexpr std::size_t kGrain = 2048;
@@ -157,16 +158,16 @@ class MapFit {
     const std::vector<TissueFit> fits = tissueOf(target_, mean_thickness_);
     for (int band = 0; band < kBands; ++band) {
       const LeafTissue& tissue = fits[static_cast<std::size_t>(band)].tissue;
-      absorption_[band] = std::min(tissue.absorption, 1e6);
-      scattering_[band] = std::min(tissue.scattering, 1e6);
+      absorption_[band] = std::min(tissue.absorption, kMostExtinction);
+      scattering_[band] = std::min(tissue.scattering, kMostExtinction);
     }
     const TissueByThickness tissue(absorption_, scattering_, 0., kThickest * mean_thickness_);
     const Sums sums = search(tissue);
     // Tissue times this with places thinner by this is the same leaf: so delta becomes 0 in the mean.
     const auto count = static_cast<double>(places_.size());
     const double mean = sums.thickness / count, wider = mean / mean_thickness_;
-    absorption_ *= wider;
-    scattering_ *= wider;
+    absorption_ = glm::min(absorption_ * wider, kMostExtinction);
+    scattering_ = glm::min(scattering_ * wider, kMostExtinction);
     bool near = std::abs(wider - 1.) < kNearEnough;
     const TissueBands before = tissue.at(mean_thickness_), even = tissue.at(mean);
     const Bands off = withoutThickness(meansOff(sums), tissue, mean);
@@ -271,7 +272,7 @@ class MapFit {
 }  // namespace
 
 LeafMapFit fitLeafMaps(const MeasuredLeafMaps& measured, double thickness) {
-  require(thickness > 0. && thickness <= 500., "thickness", thickness, "above 0, at most 500 mm");
+  require(thickness >= 0.001 && thickness <= 250., "thickness", thickness, "in [0.001, 250] mm");
   requireMaps(measured);
   return MapFit(measured, thickness).run();
 }

@@ -30,7 +30,7 @@ struct LeafMapFit {
   bool converged = false;
 };
 
-// (L12) The tissue of a leaf of the mean thickness h [mm], above 0 to 500, with gamma and delta of every place: delta
+// (L12) The tissue of a leaf of the mean thickness h [mm], 0.001 to 250, with gamma and delta of every place: delta
 // by least squares of transmittance over the bands, gamma from what is reflected then, constants so that gamma is 1 in
 // the mean and transmittance, but for what delta explains, as measured in the mean; in turns until no mean is off by
 // 1e-6. The same to the bit for any number of threads. Throws InvalidInput on values out of range, none on the leaf,

@@ -306,12 +306,20 @@ TEST(L12_FitLeafMaps, RefusesWhatIsNoLeaf) {
   EXPECT_THROW(fit(glm::vec3(0.f), glm::vec3(0.3f), 0.2), InvalidInput);
   EXPECT_THROW(fit(glm::vec3(0.3f), glm::vec3(0.f), 0.2), InvalidInput);
   EXPECT_THROW(fit(glm::vec3(0.3f), glm::vec3(std::nanf("")), 0.2), InvalidInput);
-  EXPECT_THROW(fit(glm::vec3(0.3f), glm::vec3(0.3f), 0.), InvalidInput);
+  for (const double thickness : {0., 0.0009, 251., std::nan("")})
+    EXPECT_THROW(fit(glm::vec3(0.3f), glm::vec3(0.3f), thickness), InvalidInput) << thickness;
   EXPECT_THROW(fitLeafMaps({}, 0.2), InvalidInput);
   EXPECT_THROW(fitLeafMaps({.reflectance = {glm::vec3(0.3f)}, .transmittance = {}}, 0.2), InvalidInput);
   // One place, and one that reflects and lets through more than arrives: told, not refused.
   EXPECT_NEAR(fit(glm::vec3(0.3f), glm::vec3(0.3f), 0.2).gamma[0].x, 1.f, 1e-5f);
   EXPECT_EQ(fit(glm::vec3(0.7f), glm::vec3(0.6f), 0.2).capped, 1u);
+  // Of very different places of the thinnest leaf, too, constants stay in the range that a scene may hold, and of the
+  // thickest the thickness of every place.
+  const glm::vec3 dark(0.1f), bright(1.f);
+  const MeasuredLeafMaps halves{.reflectance = {dark, bright}, .transmittance = {bright, glm::vec3(0.f)}};
+  const LeafMapFit thin = fitLeafMaps(halves, 0.001);
+  for (int band = 0; band < kBands; ++band) EXPECT_LE(thin.tissue.scattering[band], 1e6f) << band;
+  for (const float delta : fitLeafMaps(halves, 250.).delta) EXPECT_LE(std::abs(delta), 1000.f);
 }
 
 }  // namespace
