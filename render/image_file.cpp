@@ -48,7 +48,9 @@ Image decoded(const fs::path& file, std::string_view bytes, ImageValues values,
               const std::function<void(const detail::StoredImage&)>& also) {
   const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": cannot be read: " + why); };
   std::error_code failure;
-  if (bytes.empty() && !fs::is_regular_file(file, failure)) refuse("there is no such file");
+  if (bytes.empty() && fs::exists(file, failure) && !fs::is_regular_file(file, failure))
+    refuse("it is no regular file");
+  if (bytes.empty() && !fs::exists(file, failure)) refuse("there is no such file");
   if (!bytes.empty() && !file.has_extension()) refuse("its format is not told");
   detail::StoredImage stored;
   Image image = read(file, bytes, [&](const detail::StoredImage& of_file) {

@@ -67,7 +67,11 @@ LeafByContents readContents(SceneTable& table, const std::string& prefix) {
 LeafSideTextures readSide(SceneTable& maps, const std::string& side, const std::filesystem::path& folder) {
   LeafSideTextures read;
   const auto image = [&](const std::string& key, float most) {
-    return maps.has(key) ? readLeafTexture(folder / maps.text(key, ""), most) : nullptr;
+    if (!maps.has(key)) return std::shared_ptr<const LeafTexture>();
+    const std::string name = maps.text(key, "");
+    if (name.empty())
+      throw InvalidInput(fmt::format("{}: {}.{} = \"\": must be an image's file", maps.file(), maps.name(), key));
+    return readLeafTexture(folder / name, most);
   };
   read.detail = image(side, kMostLeafAlbedo);
   read.gloss = image(side + "_gloss", 1.f);
@@ -85,6 +89,10 @@ void readTextures(SceneTable& table, const std::string& prefix, LeafTextures& te
     read.albedo = maps.perBand("albedo", read.albedo, double{kMostLeafAlbedo});
     read.relief = maps.number("relief", read.relief, 0., 1000., "in [0, 1000] mm");
     maps.done();
+    for (const char* key : {"albedo", "relief"})
+      if (maps.has(key) && !read.upper.any() && !read.lower.any())
+        throw InvalidInput(fmt::format("{}: {} has {} and no image: must be with an image it counts for", maps.file(),
+                                       maps.name(), key));
     read.underside = textures.underside;
     textures = std::move(read);
     if (textures.lower.any() && !has_lower) textures.underside = {};

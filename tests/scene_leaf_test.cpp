@@ -327,8 +327,11 @@ TEST_F(SceneLeaf, RefusesBadMaps) {
   };
   refuses("maps = 3", "leaf.maps = 3: must be a table");
   refuses("maps = { top = \"upper.png\" }", "unknown key \"top\" in [leaf.maps]");
+  refuses("maps = { upper = \"\" }", "leaf.maps.upper = \"\": must be an image's file");
+  refuses("maps = { upper = \".\" }", "cannot be read: it is no regular file");
+  refuses("maps = { albedo = 2.0 }", "leaf.maps has albedo and no image: must be with an image it counts for");
+  refuses("maps = { relief = 0.2 }", "leaf.maps has relief and no image: must be with an image it counts for");
   refuses("maps = { upper = \"none.png\" }", "none.png: cannot be read: there is no such file");
-  refuses("maps = { upper = \".\" }", "cannot be read");
   refuses("maps = { upper = \"upper.png\", albedo = 101 }", "leaf.maps.albedo = 101: must be in [0, 100]");
   refuses("maps = { upper = \"upper.png\", relief = nan }", "leaf.maps.relief = nan: must be in [0, 1000] mm");
   refuses("lower = { reflectance = 1.5 }", "leaf.lower.reflectance = 1.5: must be in [0, 1]");
