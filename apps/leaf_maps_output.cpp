@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/terminal.hpp"
 #include "core/distinct_files.hpp"
 #include "core/require.hpp"
 #include "core/whole_file.hpp"
@@ -89,7 +90,7 @@ std::string fitMapsReport(const LeafMapFiles& files, bool json) {
   const auto start = std::chrono::steady_clock::now();
   LeafMapFit fit;
   try {
-    fit = fitLeafMaps(measured, files.thickness);
+    fit = fitLeafMaps(measured, files.thickness, [](double) { return !interrupted(); });
   } catch (const InvalidInput& e) {
     throw InvalidInput(std::string("--fit-maps: ") + e.what());
   }

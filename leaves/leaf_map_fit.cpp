@@ -19,7 +19,7 @@ constexpr int kMostRounds = 40, kSearchRows = 64, kRefinements = 4;
 constexpr double kMostExtinction = 1e6;  // of TissueByThickness [1/mm]
 constexpr double kNearEnough = 1e-6;
 constexpr double kLeastShare = 1e-4;  // of tissueOf()
-constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kGrain = 2048, kPartsBetweenAsking = 64;
 
 using Bands = std::array<double, kBands>;
 
@@ -118,7 +118,8 @@ void requireMaps(const MeasuredLeafMaps& measured) {
 // On its way to the tissue of a leaf.
 class MapFit {
  public:
-  MapFit(const MeasuredLeafMaps& measured, double thickness) : measured_(measured), mean_thickness_(thickness) {
+  MapFit(const MeasuredLeafMaps& measured, double thickness, const Progress& progress)
+      : measured_(measured), mean_thickness_(thickness), progress_(progress) {
     for (std::size_t i = 0; i < measured.reflectance.size(); ++i)
       if (measured.on_leaf.empty() || measured.on_leaf[i]) places_.push_back(i);
     require(!places_.empty(), "number of places on the leaf", places_.size(), "at least 1");
@@ -142,8 +143,10 @@ class MapFit {
 
   LeafMapFit run() {
     LeafMapFit fit;
-    for (fit.rounds = 1; fit.rounds <= kMostRounds && !fit.converged; ++fit.rounds) fit.converged = step();
-    --fit.rounds;
+    while (fit.rounds < kMostRounds && !fit.converged) {
+      done_ = static_cast<double>(fit.rounds++) / (kMostRounds + 1);
+      fit.converged = step();
+    }
     finish(fit);
     return fit;
   }
@@ -207,7 +210,7 @@ class MapFit {
   Sums search(const TissueByThickness& tissue) {
     const ThicknessSearch search(tissue, kThickest * mean_thickness_);
     std::vector<Sums> parts((places_.size() + kGrain - 1) / kGrain);
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const auto searchPart = [&](std::size_t part) {
       for (std::size_t i = part * kGrain; i < std::min((part + 1) * kGrain, places_.size()); ++i) {
         const glm::vec3& measured = measured_.transmittance[places_[i]];
         thickness_[i] = search.nearestTo(measured);
@@ -220,7 +223,11 @@ class MapFit {
           parts[part].squares[b] += std::pow(even.transmittance[b] - double{measured[band]}, 2);
         }
       }
-    });
+    };
+    for (std::size_t first = 0; first < parts.size(); first += kPartsBetweenAsking) {
+      requireGoOn(progress_, done_);
+      tbb::parallel_for(first, std::min(first + kPartsBetweenAsking, parts.size()), searchPart);
+    }
     Sums all;  // in order: the same for any number of threads
     for (const Sums& part : parts) all.add(part);
     return all;
@@ -261,7 +268,9 @@ class MapFit {
   }
 
   const MeasuredLeafMaps& measured_;
-  double mean_thickness_;                 // h [mm]
+  double mean_thickness_;  // h [mm]
+  const Progress& progress_;
+  double done_ = 0.;
   std::vector<std::size_t> places_;       // on the leaf
   std::vector<double> thickness_;         // of each of them [mm]
   Bands mean_{};                          // transmittance as measured
@@ -271,10 +280,10 @@ class MapFit {
 
 }  // namespace
 
-LeafMapFit fitLeafMaps(const MeasuredLeafMaps& measured, double thickness) {
+LeafMapFit fitLeafMaps(const MeasuredLeafMaps& measured, double thickness, const Progress& progress) {
   require(thickness >= 0.001 && thickness <= 250., "thickness", thickness, "in [0.001, 250] mm");
   requireMaps(measured);
-  return MapFit(measured, thickness).run();
+  return MapFit(measured, thickness, progress).run();
 }
 
 }  // namespace sunfleck

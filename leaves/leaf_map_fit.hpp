@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/progress.hpp"
 #include "leaves/leaf_description.hpp"
 
 namespace sunfleck {
@@ -34,7 +35,8 @@ struct LeafMapFit {
 // by least squares of transmittance over the bands, gamma from what is reflected then, constants so that gamma is 1 in
 // the mean and transmittance, but for what delta explains, as measured in the mean; in turns until no mean is off by
 // 1e-6. The same to the bit for any number of threads. Throws InvalidInput on values out of range, none on the leaf,
-// and a leaf that reflects nothing or lets nothing through in a band. Some 2 s of two cores for 720 x 540 places.
-LeafMapFit fitLeafMaps(const MeasuredLeafMaps& measured, double thickness);
+// and a leaf that reflects nothing or lets nothing through in a band; std::runtime_error where it is not to go on. Some
+// 2 s of two cores for 720 x 540 places.
+LeafMapFit fitLeafMaps(const MeasuredLeafMaps& measured, double thickness, const Progress& progress = {});
 
 }  // namespace sunfleck

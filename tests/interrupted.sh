@@ -18,5 +18,17 @@ for delay in 0.5 1 2; do
     *) fail "render of the field, interrupted after $delay s: status $status: $(head -c 400 stderr.txt)" ;;
   esac
 done
+printf 'P2 900 900 255\n' >map.pgm && seq 810000 | awk '{ print 20 + $1 % 91 }' >>map.pgm
+for delay in 0.5 1; do
+  rm -f leaf_upper.png leaf.toml
+  timeout --preserve-status -s INT $delay "$program" leaf --fit-maps --upper-reflectance map.pgm --transmittance map.pgm \
+    -o leaf.png >/dev/null 2>stderr.txt
+  status=$?
+  case $status in
+    0) [ -s leaf.toml ] || fail "leaf --fit-maps: no scene" ;;
+    1 | 130) [ -z "$(ls -A | grep 'leaf.*[gl]$')" ] || fail "leaf --fit-maps, interrupted after $delay s: left something behind" ;;
+    *) fail "leaf --fit-maps, interrupted after $delay s: status $status: $(head -c 400 stderr.txt)" ;;
+  esac
+done
 
 conclude

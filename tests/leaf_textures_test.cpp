@@ -288,6 +288,22 @@ TEST(L12_FitLeafMaps, DoesAgainWhatWasMeasured) {
     EXPECT_NEAR(std::sqrt(squares[band] / static_cast<double>(fit.places)), fit.rms_transmittance[band], 1e-5);
 }
 
+// Check that it ends when it is told to, in whichever round.
+TEST(L12_FitLeafMaps, EndsWhenItIsNotToGoOn) {
+  const KnownLeaf leaf = knownLeaf(96, 64, 0.01);
+  int asked = 0;
+  fitLeafMaps(leaf.measured, 0.2, [&](double done) {
+    EXPECT_TRUE(done >= 0. && done < 1.) << done;
+    return ++asked > 0;
+  });
+  ASSERT_GE(asked, 3);
+  for (int last = 1; last <= asked; ++last) {
+    int now = 0;
+    EXPECT_THROW(fitLeafMaps(leaf.measured, 0.2, [&](double) { return ++now < last; }), std::runtime_error);
+    EXPECT_EQ(now, last);
+  }
+}
+
 // Check that one thread and all find the same to the bit.
 TEST(L12_FitLeafMaps, IsTheSameForAnyNumberOfThreads) {
   const KnownLeaf leaf = knownLeaf(96, 64, 0.01);
