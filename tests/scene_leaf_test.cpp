@@ -244,7 +244,7 @@ void writeTextures(const fs::path& folder) {
 // Check that images and a lower side reach every kind as told, that the leaf is their mean, and that a scene written
 // and read again has the same.
 TEST_F(SceneLeaf, HasMapsAndALowerSide) {
-  writeTextures(folder_);
+  writeTextures(folder_.path());
   const Scene scene = readScene(write("s.toml", R"(
 [leaf]
 slab = { absorption = [2.0, 0.5, 4.0], scattering = 10.0, thickness = 0.2 }
@@ -289,7 +289,7 @@ positions = [[0, 0], [3, 0], [6, 0], [9, 0]]
   ASSERT_TRUE(scene.kinds[3].maps);
   EXPECT_EQ(scene.kinds[3].maps->places.size(), 1u);
   EXPECT_NEAR(scene.kinds[3].leaf[0].reflectance, 0.4f, 1e-6f);
-  const Scene again = readScene(write("again.toml", sceneText(scene, folder_)));
+  const Scene again = readScene(write("again.toml", sceneText(scene, folder_.path())));
   for (std::size_t kind = 0; kind < 4; ++kind) {
     EXPECT_EQ(again.kinds[kind].leaf, scene.kinds[kind].leaf) << kind;
     EXPECT_EQ(again.kinds[kind].told(), scene.kinds[kind].told()) << kind;
@@ -309,12 +309,12 @@ positions = [[0, 0], [3, 0], [6, 0], [9, 0]]
   auto made = std::make_shared<LeafTexture>(texture);
   made->file.clear();
   unsaved.kinds[0].textures.upper.detail = made;
-  EXPECT_THROW(sceneText(unsaved, folder_), InvalidInput);
+  EXPECT_THROW(sceneText(unsaved, folder_.path()), InvalidInput);
 }
 
 // Check that images that are none, or are made to do harm, are told in one line.
 TEST_F(SceneLeaf, RefusesBadMaps) {
-  writeTextures(folder_);
+  writeTextures(folder_.path());
   const auto refuses = [&](const std::string& keys, const std::string& expected) {
     const std::string message = refusal("[tree]\nfile = \"tree.obj\"\n[leaf]\n" + keys + "\n");
     EXPECT_NE(message.find(expected), std::string::npos) << message;
