@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/output_folder.hpp"
-#include "apps/terminal.hpp"
-#include "core/whole_file.hpp"
+#include "apps/bench_run.hpp"
 #include "render/compare/direction_bench.hpp"
 
 namespace sunfleck::apps {
@@ -39,25 +36,15 @@ nlohmann::ordered_json json(const std::vector<DirectionBenchPoint>& points) {
 
 }  // namespace
 
-int runBenchDirections(const SceneOptions& options, const std::string& folder_name, const RunOptions& run) {
+int runBenchDirections(const SceneOptions& options, const std::string& folder, const RunOptions& run) {
   const Scene scene = readScene(options);
-  const std::filesystem::path folder(folder_name);
-  const OutputFolder made(folder);
-  const auto csv = folder / "direction_bench.csv", svg = folder / "direction_bench.svg";
-  requireWritable(csv);
-  requireWritable(svg);
-  const auto points = benchDirections(scene, run.seed, terminalProgress("measuring", run.quiet));
-  if (points.empty()) {
-    fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
-    return 1;
-  }
-  writeWhole(csv, directionBenchCsv(points));
-  writeWhole(svg, directionBenchPlot(points, scene.name));
-  if (run.json)
-    fmt::print("{}\n", json(points).dump(2));
-  else
-    fmt::print("{}\nwrote {} and {}\n", table(points), csv.string(), svg.filename().string());
-  return 0;
+  const std::vector<std::string> files{"direction_bench.csv", "direction_bench.svg"};
+  return runBench(folder, files, run, [&](const Progress& progress) -> std::optional<BenchReport> {
+    const auto points = benchDirections(scene, run.seed, progress);
+    if (points.empty()) return std::nullopt;
+    return BenchReport{
+        table(points), json(points), {directionBenchCsv(points), directionBenchPlot(points, scene.name)}};
+  });
 }
 
 }  // namespace sunfleck::apps

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/output_folder.hpp"
-#include "apps/terminal.hpp"
-#include "core/whole_file.hpp"
+#include "apps/bench_run.hpp"
 #include "render/compare/forest_bench.hpp"
 
 namespace sunfleck::apps {
@@ -48,23 +45,12 @@ nlohmann::ordered_json json(const ForestBench& bench) {
 
 }  // namespace
 
-int runBenchForest(std::size_t most_trees, std::size_t most_near, const std::string& folder_name,
-                   const RunOptions& run) {
-  const std::filesystem::path folder(folder_name);
-  const OutputFolder made(folder);
-  const auto csv = folder / "forest_bench.csv";
-  requireWritable(csv);
-  const ForestBench bench = benchForests(most_trees, most_near, terminalProgress("measuring", run.quiet));
-  if (bench.rows.empty()) {
-    fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
-    return 1;
-  }
-  writeWhole(csv, forestBenchCsv(bench));
-  if (run.json)
-    fmt::print("{}\n", json(bench).dump(2));
-  else
-    fmt::print("{}\nwrote {}\n", table(bench), csv.string());
-  return 0;
+int runBenchForest(std::size_t most_trees, std::size_t most_near, const std::string& folder, const RunOptions& run) {
+  return runBench(folder, {"forest_bench.csv"}, run, [&](const Progress& progress) -> std::optional<BenchReport> {
+    const ForestBench bench = benchForests(most_trees, most_near, progress);
+    if (bench.rows.empty()) return std::nullopt;
+    return BenchReport{table(bench), json(bench), {forestBenchCsv(bench)}};
+  });
 }
 
 }  // namespace sunfleck::apps

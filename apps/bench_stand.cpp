@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/output_folder.hpp"
-#include "apps/terminal.hpp"
-#include "core/whole_file.hpp"
+#include "apps/bench_run.hpp"
 #include "render/compare/stand_bench.hpp"
 
 namespace sunfleck::apps {
@@ -58,24 +55,13 @@ nlohmann::ordered_json json(const StandBench& bench) {
 
 }  // namespace
 
-int runBenchStand(std::size_t most_trees, int rounds, const std::string& folder_name, const RunOptions& run) {
-  const std::filesystem::path folder(folder_name);
-  const OutputFolder made(folder);
-  const auto csv = folder / "stand_bench.csv", svg = folder / "stand_bench.svg";
-  requireWritable(csv);
-  requireWritable(svg);
-  const StandBench bench = benchStands(most_trees, rounds, terminalProgress("measuring", run.quiet));
-  if (bench.rows.empty()) {
-    fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
-    return 1;
-  }
-  writeWhole(csv, standBenchCsv(bench));
-  writeWhole(svg, standBenchPlot(bench));
-  if (run.json)
-    fmt::print("{}\n", json(bench).dump(2));
-  else
-    fmt::print("{}\nwrote {} and {}\n", table(bench), csv.string(), svg.filename().string());
-  return 0;
+int runBenchStand(std::size_t most_trees, int rounds, const std::string& folder, const RunOptions& run) {
+  const std::vector<std::string> files{"stand_bench.csv", "stand_bench.svg"};
+  return runBench(folder, files, run, [&](const Progress& progress) -> std::optional<BenchReport> {
+    const StandBench bench = benchStands(most_trees, rounds, progress);
+    if (bench.rows.empty()) return std::nullopt;
+    return BenchReport{table(bench), json(bench), {standBenchCsv(bench), standBenchPlot(bench)}};
+  });
 }
 
 }  // namespace sunfleck::apps

@@ -1,25 +1,20 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/bench_directions.hpp"
 #include "apps/bench_forest.hpp"
 #include "apps/bench_pictures.hpp"
+#include "apps/bench_run.hpp"
 #include "apps/bench_scene.hpp"
 #include "apps/bench_stand.hpp"
 #include "apps/commands.hpp"
-#include "apps/output_folder.hpp"
-#include "apps/terminal.hpp"
-#include "core/whole_file.hpp"
 #include "render/compare/slab_bench.hpp"
 
 namespace sunfleck::apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string table(const SlabBench& bench) {
   std::string text =
@@ -60,23 +55,13 @@ nlohmann::ordered_json json(const SlabBench& bench) {
   return {{"machine", bench.machine}, {"rows", std::move(rows)}};
 }
 
-int runBenchSlab(const std::string& folder_name, const RunOptions& run) {
-  const fs::path folder(folder_name);
-  const OutputFolder made(folder);
-  requireWritable(folder / "slab_bench.csv");
-  requireWritable(folder / "slab_bench.svg");
-  const SlabBench bench = benchSlabs(terminalProgress("measuring", run.quiet));
-  if (bench.rows.empty()) {
-    fmt::print(stderr, "sunfleck: interrupted: nothing was written\n");
-    return 1;
-  }
-  writeWhole(folder / "slab_bench.csv", slabBenchCsv(bench));
-  writeWhole(folder / "slab_bench.svg", slabBenchPlot(bench));
-  if (run.json)
-    fmt::print("{}\n", json(bench).dump(2));
-  else
-    fmt::print("{}\nwrote {} and slab_bench.svg\n", table(bench), (folder / "slab_bench.csv").string());
-  return 0;
+int runBenchSlab(const std::string& folder, const RunOptions& run) {
+  const std::vector<std::string> files{"slab_bench.csv", "slab_bench.svg"};
+  return runBench(folder, files, run, [](const Progress& progress) -> std::optional<BenchReport> {
+    const SlabBench bench = benchSlabs(progress);
+    if (bench.rows.empty()) return std::nullopt;
+    return BenchReport{table(bench), json(bench), {slabBenchCsv(bench), slabBenchPlot(bench)}};
+  });
 }
 
 }  // namespace

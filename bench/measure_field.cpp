@@ -17,6 +17,7 @@
 
 #include "bench/damped_line.hpp"
 #include "bench/kept_trace.hpp"
+#include "bench/leaf_errors.hpp"
 #include "bench/measurement.hpp"
 #include "core/csv_field.hpp"
 #include "core/elapsed.hpp"
@@ -25,7 +26,6 @@
 #include "field/grid_field.hpp"
 #include "field/leaf_field.hpp"
 #include "grid/leaf_depth.hpp"
-#include "render/compare/category_errors.hpp"
 #include "render/leaf_models.hpp"
 #include "render/stand_geometry.hpp"
 
@@ -109,7 +109,7 @@ struct Case {
 // What a method finds in a band.
 struct Answer {
   std::vector<float> irradiance;  // of each leaf, both sides [1]
-  std::vector<float> direct;      // the same of direct light; empty: not told
+  std::vector<float> direct;      // the same of direct light
   int iterations = 0;
   double error_bound = 0., rest = 0.;  // see FieldSolution; light that is lost, of what comes
   double seconds = 0., cpu_seconds = 0.;
@@ -129,8 +129,7 @@ struct Row {
 
 Row judge(const Case& of, std::size_t band, const std::string& method, const Answer& answer) {
   const ForwardResult& truth = of.truth[band];
-  const ModelErrors errors = modelErrors(answer.irradiance, truth.leaf_irradiance, of.groups);
-  const double noise = *referenceNoise(truth.leaf_irradiance, truth.leaf_standard_error);
+  const LeafErrors errors = leafErrors(answer.irradiance, truth, of.groups);
   double direct_squares = 0., direct_truth = 0.;
   for (std::size_t i = 0; i < answer.direct.size(); ++i) {
     const Estimate& direct = truth.leaf_direct[i];
@@ -138,25 +137,24 @@ Row judge(const Case& of, std::size_t band, const std::string& method, const Ans
     direct_truth += direct.value * direct.value;
   }
   const auto without = [](double all, double part) { return std::sqrt(std::max(0., all * all - part * part)); };
-  return {
-      .tree = of.name,
-      .method = method,
-      .periodic = of.stand.period.has_value(),
-      .zenith = of.zenith,
-      .band = of.bands[band],
-      .paths = truth.paths,
-      .weighted = 100. * errors.rms_weighted.value_or(0.),
-      .weighted_noise = 100. * categoryNoise(truth.leaf_irradiance, truth.leaf_standard_error, of.groups).value_or(0.),
-      .by_category = 100. * errors.rms_category.value_or(0.),
-      .leaf = 100. * without(*errors.rms_leaf, noise),
-      .leaf_noise = 100. * noise,
-      .bias = 100. * *errors.bias,
-      .direct = 100. * std::sqrt(std::max(0., direct_squares / direct_truth)),
-      .iterations = answer.iterations,
-      .error_bound = answer.error_bound,
-      .rest = answer.rest,
-      .milliseconds = 1e3 * answer.seconds,
-      .cpu_milliseconds = 1e3 * answer.cpu_seconds};
+  return {.tree = of.name,
+          .method = method,
+          .periodic = of.stand.period.has_value(),
+          .zenith = of.zenith,
+          .band = of.bands[band],
+          .paths = truth.paths,
+          .weighted = errors.weighted,
+          .weighted_noise = errors.weighted_noise,
+          .by_category = errors.by_category,
+          .leaf = without(errors.leaf, errors.leaf_noise),
+          .leaf_noise = errors.leaf_noise,
+          .bias = errors.bias,
+          .direct = 100. * std::sqrt(std::max(0., direct_squares / direct_truth)),
+          .iterations = answer.iterations,
+          .error_bound = answer.error_bound,
+          .rest = answer.rest,
+          .milliseconds = 1e3 * answer.seconds,
+          .cpu_milliseconds = 1e3 * answer.cpu_seconds};
 }
 
 void print(const Row& row) {
@@ -323,16 +321,23 @@ std::vector<Row> judgeOthers(const Case& of, const FieldEffort& effort) {
   const std::vector<float> direct =
       ofLeaves(of, elements, directLight(*of.mesh, elements, of.stand.period, of.sun, effort.direct).irradiance);
   const DampedLine line(*of.mesh, of.stand, of.sun, geometry.depths.front(), geometry.compensation.front(), direct);
+  struct Known {
+    const char* name;
+    Model model;
+    std::vector<float> direct;
+  };
+  std::vector<Known> models{{"SS", Model::ss, {}}, {"SPP", Model::spp, {}}, {"SPPG", Model::sppg, {}}};
+  // Leaves that scatter nothing have direct light alone.
+  for (Known& known : models) known.direct = leafIrradiance(known.model, geometry, std::array{LeafOptics{0.f, 0.f}});
   std::vector<Row> rows;
   for (std::size_t band = 0; band < of.bands.size(); ++band) {
     const std::array optics{of.bands[band].leaf()};
-    for (const auto& [name, model] :
-         {std::pair("SS", Model::ss), std::pair("SPP", Model::spp), std::pair("SPPG", Model::sppg)}) {
+    for (const Known& known : models) {
       const Elapsed elapsed;
-      std::vector<float> found = leafIrradiance(model, geometry, optics);
-      print(rows.emplace_back(judge(of, band, name,
+      std::vector<float> found = leafIrradiance(known.model, geometry, optics);
+      print(rows.emplace_back(judge(of, band, known.name,
                                     {.irradiance = std::move(found),
-                                     .direct = {},
+                                     .direct = known.direct,
                                      .seconds = elapsed.seconds(),
                                      .cpu_seconds = elapsed.cpuSeconds()})));
     }

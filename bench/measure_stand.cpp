@@ -13,10 +13,10 @@
 #include <numeric>
 #include <string>
 
+#include "bench/leaf_errors.hpp"
 #include "bench/measurement.hpp"
 #include "core/elapsed.hpp"
 #include "field/large_stand.hpp"
-#include "render/compare/category_errors.hpp"
 #include "render/compare/validation.hpp"
 #include "render/leaf_models.hpp"
 #include "render/stand_field.hpp"
@@ -131,14 +131,12 @@ void measure(const Options& options) {
   StandGeometry stand;
   stand.update(scene);
   const std::vector<Category> groups = categories(meanDepths(leafGeometry(scene, stand)));
-  fmt::print("\nMonte Carlo: noise {:.2f} % of categories, {:.2f} % of leaves\n",
-             100. * *categoryNoise(truth.leaf_irradiance, truth.leaf_standard_error, groups),
-             100. * *referenceNoise(truth.leaf_irradiance, truth.leaf_standard_error));
   const auto tell = [&](const char* name, const FieldResult& judged) {
-    const ModelErrors errors = modelErrors(leafIrradiance(judged, scene, 0), truth.leaf_irradiance, groups);
-    fmt::print("{:<8} w {:5.2f} uw {:5.2f} leaf {:5.2f} bias {:+5.2f} %\n", name, 100. * *errors.rms_weighted,
-               100. * *errors.rms_category, 100. * *errors.rms_leaf, 100. * *errors.bias);
+    const LeafErrors errors = leafErrors(leafIrradiance(judged, scene, 0), truth, groups);
+    fmt::print("{:<8} w {:5.2f} (noise {:4.2f}) uw {:5.2f} leaf {:5.2f} (noise {:4.2f}) bias {:+5.2f} %\n", name,
+               errors.weighted, errors.weighted_noise, errors.by_category, errors.leaf, errors.leaf_noise, errors.bias);
   };
+  fmt::print("\n");
   tell("stand", result);
   tell("far", byCells(result, scene, field, all));
   if (!options.whole) return;

@@ -205,6 +205,8 @@ void LargeStandField::requireMemory(const FieldLighting& lighting, std::span<con
     light += 8. * bands * sides;
   }
   bytes += std::min(light, detail::kLargeStandLight);
+  const double pictures = pictureBytes(lighting);
+  bytes += pictures;
   if (cells_) {
     bytes += cells_->memoryBytes(1);
     const double line_area = lineArea();
@@ -218,9 +220,13 @@ void LargeStandField::requireMemory(const FieldLighting& lighting, std::span<con
       if (kind) bytes += static_cast<double>(kind->exchange.memoryBytes() + 4 * kind->outside.side.size());
   }
   stats_.memory = bytes;
-  const double most = std::min(effort_.most_memory, availableMemory());
+  double held = 0.;  // of pictures, already
+  for (const auto& turn : turns_) held += detail::kBytesOfPixel * static_cast<double>(turn->picture.side.size());
+  const double most = std::min(effort_.most_memory, availableMemory() + held);
   require(bytes <= most, fmt::format("light field of {} trees in view: memory [MB]", seen.size() + far.size()),
-          std::ceil(1e-6 * bytes), fmt::format("at most {:.0f}: fewer trees in view", 1e-6 * most));
+          std::ceil(1e-6 * bytes),
+          fmt::format("at most {:.0f}: fewer {}", 1e-6 * most,
+                      pictures > 0.5 * bytes ? "rotations of trees that differ" : "trees in view"));
 }
 
 void LargeStandField::makeStep(Step step, std::span<const std::size_t> seen, std::span<const std::size_t> far,

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/bounds.hpp"
 #include "core/progress.hpp"
 #include "core/shared_progress.hpp"
 #include "core/stand.hpp"
@@ -86,6 +87,8 @@ class LargeStandField {
   void makeTurns(const Progress& progress);
   void makeCells(const Progress& progress);
   double lineArea() const;
+  Bounds boxOf(std::size_t kind) const;
+  double pictureBytes(const FieldLighting& lighting) const;
   const TreePicture& pictureOf(Turn& turn, std::size_t sun) const;
   void makeSuns(std::span<const std::size_t> seen, const Progress& progress);
   void solveCells(const Progress& progress);

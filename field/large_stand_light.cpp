@@ -7,8 +7,11 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include "field/detail/large_stand_state.hpp"
 #include "sky/sky_shares.hpp"
@@ -23,18 +26,69 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 }  // namespace
 
-// As fine as elements ask for, and as coarse as pictures together must be [m^2].
+// As fine as elements ask for, and as coarse as pictures together must be [m^2]. Of kinds that are not made, what their
+// meshes tell: then it is no finer than it will be.
 double LargeStandField::lineArea() const {
+  struct OfKind {
+    double trees = 0., leaf_area = 0., leaves = 0., box = 0.;
+  };
+  std::vector<OfKind> of_kinds(meshes_.size());
+  for (const Placement& tree : stand_.trees) ++of_kinds[tree.kind].trees;
+  for (std::size_t i = 0; i < of_kinds.size(); ++i) {
+    OfKind& of_kind = of_kinds[i];
+    if (of_kind.trees == 0.) continue;
+    const glm::dvec3 size(boxOf(i).size());
+    of_kind.box = size.x * size.y + size.y * size.z + size.x * size.z;
+    if (i < kinds_.size() && kinds_[i]) {
+      const FieldElements& elements = kinds_[i]->elements;
+      of_kind.leaf_area = std::accumulate(
+          elements.area.begin(), elements.area.begin() + static_cast<std::ptrdiff_t>(elements.leaf_elements), 0.);
+      of_kind.leaves = static_cast<double>(elements.leaf_elements);
+    } else {
+      of_kind.leaf_area = leafArea(*meshes_[i]);
+      of_kind.leaves = static_cast<double>(meshes_[i]->leaf_count);
+    }
+  }
   double leaf_area = 0., leaves = 0., all = 0.;
   for (const Placement& tree : stand_.trees) {
-    const FieldElements& elements = kinds_[tree.kind]->elements;
-    const glm::dvec3 size(kinds_[tree.kind]->box.size());
-    leaf_area += std::accumulate(elements.area.begin(),
-                                 elements.area.begin() + static_cast<std::ptrdiff_t>(elements.leaf_elements), 0.);
-    leaves += static_cast<double>(elements.leaf_elements);
-    all += size.x * size.y + size.y * size.z + size.x * size.z;
+    leaf_area += of_kinds[tree.kind].leaf_area;
+    leaves += of_kinds[tree.kind].leaves;
+    all += of_kinds[tree.kind].box;
   }
   return std::max(leaf_area / leaves / double{effort_.pixels}, all / effort_.most_lines);
+}
+
+Bounds LargeStandField::boxOf(std::size_t kind) const {
+  return kind < kinds_.size() && kinds_[kind] ? kinds_[kind]->box : bounds(*meshes_[kind]);
+}
+
+// Pictures are held of one sun at a time. A tree is taken to fill an ellipsoid of its box's size, as crowns about do.
+double LargeStandField::pictureBytes(const FieldLighting& lighting) const {
+  std::set<std::pair<std::uint32_t, float>> turns;
+  for (const Placement& tree : stand_.trees) turns.emplace(tree.kind, tree.rotation);
+  std::map<std::uint32_t, glm::vec3> sizes;
+  for (const auto& [kind, rotation] : turns)
+    if (!sizes.contains(kind)) sizes[kind] = boxOf(kind).size();
+  const double line_area = lineArea();
+  double most = 0.;
+  for (const FieldSun& sun : lighting.suns) {
+    const SunLines lines = sunLines(sun.along, line_area, stand_.period);
+    double pixels = 0.;
+    for (const auto& [kind, rotation] : turns) {
+      const glm::vec3 size = sizes[kind];
+      glm::dvec2 squares(0.);
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::vec3 along(0.f);
+        along[axis] = size[axis];
+        const glm::dvec3 turned(detail::turnedBy(along, rotation));
+        const glm::dvec2 seen(glm::dot(lines.right, turned), glm::dot(lines.up, turned));
+        squares += seen * seen;
+      }
+      pixels += std::sqrt(squares.x * squares.y);
+    }
+    most = std::max(most, pixels);
+  }
+  return most * detail::kBytesOfPixel;
 }
 
 // Of the suns whose lines are known.

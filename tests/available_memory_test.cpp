@@ -18,7 +18,7 @@ class AvailableMemory : public ::testing::Test {
   }
   double available() const { return availableMemory(machine / ""); }
 
-  const Folder machine;
+  const TemporaryFolder machine;
 };
 
 // Check the figure of the system, 8 GiB at most, and that a machine that tells nothing is taken for a large one.

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "core/shared_progress.hpp"
 #include "core/tree_mesh.hpp"
 #include "core/whole_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -109,26 +109,23 @@ TreeMesh twoLeaves() {
 
 // Check that a signal's handler can remove what is half written, and does no harm when nothing is.
 TEST(WholeFile, IsRemovedUnfinished) {
-  const fs::path folder = fs::temp_directory_path() / ("sunfleck_unfinished_" + std::to_string(::getpid()));
-  fs::create_directory(folder);
-  const auto files = [&] { return std::distance(fs::directory_iterator(folder), fs::directory_iterator{}); };
+  const TemporaryFolder folder;
   removeUnfinished();
   EXPECT_THROW(writeWhole(folder / "a.txt",
                           [&](const fs::path& temporary) {
                             std::ofstream(temporary) << "half";
-                            EXPECT_EQ(files(), 1);
+                            EXPECT_EQ(folder.files(), 1);
                             removeUnfinished();
-                            EXPECT_EQ(files(), 0);
+                            EXPECT_EQ(folder.files(), 0);
                             throw std::runtime_error("ended");
                           }),
                std::runtime_error);
   writeWhole(folder / "b.txt", "whole");
   removeUnfinished();
-  EXPECT_EQ(files(), 1);
+  EXPECT_EQ(folder.files(), 1);
   // A place that takes no file is known before the work.
   EXPECT_THROW(requireWritable("/proc/x.txt"), InvalidInput);
   EXPECT_THROW(requireWritable(folder / std::string(250, 'x')), InvalidInput);
-  fs::remove_all(folder);
 }
 
 }  // namespace
@@ -235,8 +232,7 @@ TEST(Require, TellsAValueApartFromItsRule) {
 
 // Check that a file appears whole, and that a writer that fails leaves neither a file nor its temporary.
 TEST(WholeFile, IsWrittenWholeOrNotAtAll) {
-  const fs::path folder = fs::temp_directory_path() / ("sunfleck_whole_file_" + std::to_string(::getpid()));
-  fs::create_directory(folder);
+  const TemporaryFolder folder;
   writeWhole(folder / "a.txt", "content");
   std::ifstream in(folder / "a.txt");
   std::string read;
@@ -249,13 +245,12 @@ TEST(WholeFile, IsWrittenWholeOrNotAtAll) {
                           }),
                std::runtime_error);
   EXPECT_THROW(writeWhole(folder / "none" / "c.txt", "x"), InvalidInput);
-  EXPECT_THROW(requireWritable(folder), InvalidInput);
+  EXPECT_THROW(requireWritable(folder.path()), InvalidInput);
   EXPECT_THROW(requireWritable("/dev/null"), InvalidInput);  // would be replaced by a file
   fs::create_symlink(folder / "a.txt", folder / "link.txt");
   writeWhole(folder / "link.txt", "through");
   EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
   EXPECT_EQ(fs::file_size(folder / "a.txt"), 7u);
   fs::remove(folder / "link.txt");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}), 1);
-  fs::remove_all(folder);
+  EXPECT_EQ(folder.files(), 1);
 }

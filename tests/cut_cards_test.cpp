@@ -1,10 +1,8 @@
 // Check how leaves are cut out of cards: outlines of masks, their triangles, and cards of an OBJ and a glTF.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "core/random.hpp"
@@ -13,6 +11,7 @@
 #include "plants/detail/mask_outline.hpp"
 #include "plants/detail/mask_triangles.hpp"
 #include "plants/import.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 using namespace sunfleck::detail;
@@ -67,13 +66,7 @@ bool isTorn(double x, double y) {
 
 class Cards : public testing::Test {
  protected:
-  Cards() { fs::create_directories(folder_); }
-  ~Cards() override { fs::remove_all(folder_); }
-
-  fs::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-    return folder_ / name;
-  }
+  fs::path file(const std::string& name, const std::string& content) const { return folder_.write(name, content); }
 
   // Two cards of 2 x 1 m with the whole image and its lower left quarter, one of them bent along its diagonal.
   fs::path cards(const std::string& material) const {
@@ -84,8 +77,7 @@ class Cards : public testing::Test {
                 "f 1/1 2/2 3/3 4/4\nf 5/1 6/5 7/6\nf 5/1 7/6 8/7\n");
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_cards_" + std::to_string(::getpid()) + "_" +
-                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
+  TemporaryFolder folder_;
 };
 
 ImageReader readerOf(const LeafMask& mask) {

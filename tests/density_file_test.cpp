@@ -41,7 +41,7 @@ void writeOther(const fs::path& file, std::uint32_t compression,
 
 // Check that a file read back is the grid that was written, to the bit.
 TEST(D1_DensityGridFile, ReadsBackWhatWasWritten) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const DensityGrid grid = DensityGrid::voxelize(randomLeaves(2000, 1.f, .1f), .1f);
   grid.write(folder / "a.vdb", sourceNamed("random leaves"));
   EXPECT_EQ(folder.files(), 1);
@@ -58,7 +58,7 @@ TEST(D1_DensityGridFile, ReadsBackWhatWasWritten) {
 // the density is that of the leaves. A leaf may lie half a cell from its cell's centre along each axis, but only the
 // mean of these offsets counts: its standard deviation is h / sqrt(12 n) for n leaves, and 5 of them are allowed.
 TEST(D1_DensityGridFile, OtherProgramsFindTheLeavesInTheirPlace) {
-  const Folder folder;
+  const TemporaryFolder folder;
   constexpr int leaves = 2000;
   const float h = 0.4f;
   const TreeMesh mesh = randomLeaves(leaves, 1.f, .05f, {.3f, -2.f, 4.f});
@@ -97,7 +97,7 @@ TEST(D1_DensityGridFile, OtherProgramsFindTheLeavesInTheirPlace) {
 // several grids, a transform of another place.
 TEST(D1_DensityGridFile, ReadsFilesOfOtherPrograms) {
   openvdb::initialize();
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const std::uint32_t compression : {0u, 1u, 2u, 3u, 4u, 5u, 6u})
     for (const bool in_half : {false, true}) {
       auto grid = openvdb::FloatGrid::create(0.f);
@@ -141,7 +141,7 @@ TEST(D1_DensityGridFile, ReadsFilesOfOtherPrograms) {
 // Check that a translation and a scale are understood from every kind of transform that can hold them, and that others
 // are refused.
 TEST(D1_DensityGridFile, UnderstandsTransforms) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
   const auto with = [&](const openvdb::math::MapBase& map) {
     writeOther(file, 3, [&](openvdb::FloatGrid& grid) {
@@ -175,7 +175,7 @@ TEST(D1_DensityGridFile, UnderstandsTransforms) {
 }
 
 TEST(D1_DensityGridFile, RefusesWhatIsNoDensity) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
   const auto refused = [&](const std::string& why) { EXPECT_EQ(refusal(file), file.string() + ": " + why); };
   refused("does not exist");
@@ -219,7 +219,7 @@ TEST(D1_DensityGridFile, RefusesWhatIsNoDensity) {
 
 // Check that a file cut short anywhere is refused: the last byte belongs to the grid.
 TEST(D1_DensityGridFile, RefusesATruncatedFile) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
   for (const std::uint32_t compression : {0u, 3u, 6u}) {
     writeOther(file, compression);
@@ -237,7 +237,7 @@ TEST(D1_DensityGridFile, RefusesATruncatedFile) {
 // Check that the same leaves make the same file, and that any one wrong byte in it is found: those after the identifier
 // by its checksum, those before it by their rules.
 TEST(D1_DensityGridFile, AnyWrongByteInOurOwnFilesIsFound) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
   const TreeMesh mesh = randomLeaves(100, .5f, .1f, glm::vec3(2.f));
   DensityGrid::voxelize(mesh, .1f).write(file, sourceNamed("leaves"));
@@ -261,7 +261,7 @@ TEST(D1_DensityGridFile, AnyWrongByteInOurOwnFilesIsFound) {
 // Check that files with wrong bits, bytes or numbers anywhere are refused or give a sound grid: without a crash, a
 // report of the sanitizers, or memory out of proportion to the file.
 TEST(D1_DensityGridFile, SurvivesCorruption) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
   Random random(17, 0);
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random.bits() % n); };

@@ -280,7 +280,7 @@ TEST(D11_OpticsOfCells, MakeUpThatOfAllLeaves) {
 // (D11) Check that optics are read back to the bit, that damage to them is found, and that the hash tells optics, kinds
 // and places apart.
 TEST(D11_OpticsOfCells, AreWrittenAndReadBack) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const TwoKinds two;
   const DensityGrid grid = two.voxelized(two.stand);
   grid.write(folder / "a.vdb", sourceNamed("two kinds"));

@@ -1,11 +1,9 @@
 // Check stands of instances in glTF: kept as kinds and placements, by importStand() and by scenes.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "core/require.hpp"
@@ -14,6 +12,7 @@
 #include "plants/write_gltf.hpp"
 #include "render/scene_file.hpp"
 #include "render/scene_writer.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -22,16 +21,9 @@ namespace {
 
 class GltfStand : public testing::Test {
  protected:
-  GltfStand() { fs::create_directories(folder_); }
-  ~GltfStand() override { fs::remove_all(folder_); }
+  fs::path file(const std::string& name, const std::string& content) const { return folder_.write(name, content); }
 
-  fs::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-    return folder_ / name;
-  }
-
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_gltf_stand_" + std::to_string(::getpid()) + "_" +
-                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
+  TemporaryFolder folder_;
 };
 
 // Two meshes of a triangle in the file's plane y = 0, of which two sides are 1 long.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,25 +10,12 @@
 
 #include "core/require.hpp"
 #include "grid/density_grid.hpp"
+#include "tests/temporary_folder.hpp"
 
 // Files of grids for tests.
 namespace sunfleck {
 
 namespace fs = std::filesystem;
-
-// A folder that goes when the test ends.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("sunfleck_grid_file_" + std::to_string(::getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  auto files() const { return std::distance(fs::directory_iterator(path_), fs::directory_iterator{}); }
-
- private:
-  fs::path path_;
-};
 
 inline std::string readBytes(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);

@@ -67,7 +67,7 @@ void rewrite(const fs::path& file, const std::function<void(std::vector<openvdb:
 
 // Check that all grids are read back as they were written, to the bit, also when another program has written them anew.
 TEST(D7_GridFile, ReadsBackAllGrids) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const DensityGrid grid = DensityGrid::voxelize(smallTree(500), .1f);
   grid.write(folder / "a.vdb", sourceNamed("a tree"));
   EXPECT_EQ(allValues(DensityGrid::read(folder / "a.vdb")), allValues(grid));
@@ -83,7 +83,7 @@ TEST(D7_GridFile, ReadsBackAllGrids) {
 // Check what OpenVDB's own reader finds: the grids in their order, in the same cells, of the same kind, with units and
 // origin; the moments where there is density.
 TEST(D7_GridFile, OtherProgramsFindAllGrids) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const TreeMesh mesh = smallTree(500);
   const DensityGrid made = DensityGrid::voxelize(mesh, .1f);
   made.write(folder / "a.vdb", {.name = "a tree", .hash = meshHash(mesh), .program = "Sunfleck 1, commit 2"});
@@ -139,7 +139,7 @@ TEST(D7_GridFile, CrownAreaCountsColumns) {
 // Check that NanoVDB's reader finds the same grids with the same values in the same cells, and that equal grids make
 // equal files.
 TEST(D7_GridFile, NanoVdbHoldsTheSame) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const DensityGrid made = DensityGrid::voxelize(smallTree(500), .1f);
   made.write(folder / "a.vdb", sourceNamed("a tree"));
   made.write(folder / "a.nvdb", sourceNamed("a tree"));
@@ -170,7 +170,7 @@ TEST(D7_GridFile, NanoVdbHoldsTheSame) {
 // Check that the memory foretold from a file's bytes is what OpenVDB takes: of blocks, of nodes almost empty, of tiles.
 // Left out are the tree itself and its root, a kilobyte; the root's entries count with what an allocator adds: 1 %.
 TEST(D7_GridFile, MemoryIsForetold) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
   for (const int far : {0, 100}) {
     DensityGrid::voxelize(smallTree(500), .1f).write(file, sourceNamed("a tree"));
@@ -190,7 +190,7 @@ TEST(D7_GridFile, MemoryIsForetold) {
 }
 
 TEST(D7_GridFile, RefusesGridsThatDoNotBelongTogether) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
   const auto refused = [&](const std::string& why, const auto& change) {
     DensityGrid::voxelize(smallTree(20), .1f).write(file, sourceNamed("a tree"));
@@ -229,7 +229,7 @@ TEST(D7_GridFile, RefusesGridsThatDoNotBelongTogether) {
 // finds the damage, unless it is in the identifier, without which the rest is whole. Under another identifier, as if
 // another program had written them, they are refused with one line or sound.
 TEST(D7_GridFile, DamageIsRefusedOrHarmless) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
   const DensityGrid grid = DensityGrid::voxelize(smallTree(4), .1f);
   grid.write(file, sourceNamed("a tree"));

@@ -2,16 +2,15 @@
 // size.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 
 #include "core/require.hpp"
 #include "plants/import.hpp"
 #include "render/image_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -20,13 +19,7 @@ namespace {
 
 class HostileFiles : public testing::Test {
  protected:
-  HostileFiles() { fs::create_directories(folder_); }
-  ~HostileFiles() override { fs::remove_all(folder_); }
-
-  fs::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-    return folder_ / name;
-  }
+  fs::path file(const std::string& name, const std::string& content) const { return folder_.write(name, content); }
 
   // What importing ends with, without the folder; "read" when it succeeds. It may take `times` the file's size in
   // memory, and what loading an image's libraries and small things take.
@@ -38,9 +31,7 @@ class HostileFiles : public testing::Test {
     } catch (const InvalidInput& e) {
       text = e.what();
       EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-      const std::string prefix = folder_.string() + "/";
-      for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
-        text.erase(at, prefix.size());
+      text = folder_.without(text);
     }
 #ifndef __SANITIZE_ADDRESS__
     constexpr double kSmall = 150e6;  // [byte]
@@ -55,8 +46,7 @@ class HostileFiles : public testing::Test {
     return use.ru_maxrss;  // [kB]
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_hostile_" + std::to_string(::getpid()) + "_" +
-                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
+  TemporaryFolder folder_;
 };
 
 // A whole PNG but for its pixels, of which it says to have 4096 x 4096, or 60000 x 60000.

@@ -3,7 +3,6 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -15,21 +14,12 @@
 
 #include "core/require.hpp"
 #include "render/scene.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace {
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
-
-// A folder of this test's own, removed with all that is in it.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("sunfleck_image_file_" + std::to_string(::getpid()));
-  Folder() { fs::create_directory(path); }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
 
 Image colours() {
   return {.width = 3,
@@ -50,23 +40,23 @@ std::vector<T> pixels(OIIO::ImageInput& in, OIIO::TypeDesc type) {
 // Check that an EXR gives back the very floats and channel names it was written with, and that nothing in it changes
 // from one writing to the next.
 TEST(ImageFile, ExrKeepsEveryValue) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Image image = colours();
-  writeImage(folder.path / "a.exr", image, 7.f);
-  const auto in = OIIO::ImageInput::open((folder.path / "a.exr").string());
+  writeImage(folder / "a.exr", image, 7.f);
+  const auto in = OIIO::ImageInput::open((folder / "a.exr").string());
   ASSERT_TRUE(in);
   EXPECT_EQ(in->spec().channelnames, image.channels);
   EXPECT_EQ(in->spec().get_string_attribute("DateTime"), "");
   EXPECT_EQ(pixels<float>(*in, OIIO::TypeDesc::FLOAT), image.values);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator{}), 1);
+  EXPECT_EQ(folder.files(), 1);
 }
 
 // Check that a PNG shows radiance times exposure by the published curve of sRGB (IEC 61966-2-1): linear .214 is code
 // 127, .0031308 is 10, half is 188; what is negative is black, what is above 1 white.
 TEST(ImageFile, PngIsSRgb) {
-  const Folder folder;
-  writeImage(folder.path / "a.PNG", colours(), 1.f);
-  const auto in = OIIO::ImageInput::open((folder.path / "a.PNG").string());
+  const TemporaryFolder folder;
+  writeImage(folder / "a.PNG", colours(), 1.f);
+  const auto in = OIIO::ImageInput::open((folder / "a.PNG").string());
   ASSERT_TRUE(in);
   ASSERT_EQ(in->spec().nchannels, 3);
   const auto codes = pixels<std::uint8_t>(*in, OIIO::TypeDesc::UINT8);
@@ -89,9 +79,9 @@ TEST(ImageFile, PngOfOneChannelIsGrey) {
 
 // Check that what cannot be written is refused by one line that names the file, and leaves nothing behind.
 TEST(ImageFile, RefusesWhatItCannotWrite) {
-  const Folder folder;
-  for (const fs::path& bad : {folder.path / "a.jpg", folder.path / "a", folder.path / "none" / "a.png",
-                              folder.path / "none" / "a.exr", folder.path}) {
+  const TemporaryFolder folder;
+  for (const fs::path& bad :
+       {folder / "a.jpg", folder / "a", folder / "none" / "a.png", folder / "none" / "a.exr", folder.path()}) {
     try {
       writeImage(bad, colours(), 1.f);
       FAIL() << bad << " was written";
@@ -100,7 +90,7 @@ TEST(ImageFile, RefusesWhatItCannotWrite) {
       EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
     }
   }
-  EXPECT_TRUE(fs::is_empty(folder.path));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
 std::shared_ptr<TreeMesh> oneLeaf() {
@@ -158,8 +148,8 @@ TEST(SceneGeometry, CameraShowsTheWholeStand) {
 
 // Check that the bytes of a PNG are read as the file of them is, and that what they are not is refused.
 TEST(ImageFile, OpacityIsReadFromBytes) {
-  const Folder folder;
-  const fs::path file = folder.path / "leaf.png";
+  const TemporaryFolder folder;
+  const fs::path file = folder / "leaf.png";
   writePng(file, 2, 1, std::vector<std::uint8_t>{255, 0, 0, 0, 255, 51});
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};

@@ -1,7 +1,6 @@
 #include "plants/import.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -9,12 +8,12 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "core/require.hpp"
 #include "plants/species.hpp"
 #include "plants/write_obj.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -24,17 +23,7 @@ namespace {
 // A folder that goes away with the test.
 class Import : public testing::Test {
  protected:
-  Import() {
-    folder_ = fs::temp_directory_path() / ("sunfleck_import_" + std::to_string(::getpid()) + "_" +
-                                           testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  ~Import() override { fs::remove_all(folder_); }
-
-  fs::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-    return folder_ / name;
-  }
+  fs::path file(const std::string& name, const std::string& content) const { return folder_.write(name, content); }
 
   // The message importing ends with, without the folder; empty when it succeeds.
   std::string refusal(const fs::path& path, const ImportRules& rules = {}) const {
@@ -43,14 +32,12 @@ class Import : public testing::Test {
     } catch (const InvalidInput& e) {
       std::string text = e.what();
       EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-      const std::string prefix = folder_.string() + "/";
-      if (const auto at = text.find(prefix); at != std::string::npos) text.erase(at, prefix.size());
-      return text;
+      return folder_.without(text);
     }
     return "";
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 ImportRules rulesOf(const std::vector<std::string>& leaf, const std::vector<std::string>& wood) {
@@ -228,7 +215,7 @@ TEST_F(Import, BrokenObjIsRefused) {
   for (const auto& [content, expected] : cases) EXPECT_EQ(refusal(file("t.obj", content)), expected);
   EXPECT_NE(refusal(file("t.obj", "\x7f\x45\x4c\x46\x02\x01\xff\xfe garbage")).find("has no faces"), std::string::npos);
   EXPECT_EQ(refusal(folder_ / "none.obj"), "none.obj: cannot be read: there is no such file");
-  EXPECT_NE(refusal(folder_).find("it is a folder"), std::string::npos);
+  EXPECT_NE(refusal(folder_.path()).find("it is a folder"), std::string::npos);
   EXPECT_NE(refusal(file("t.xyz", "v")).find("an .obj, .ply, .gltf, .glb, .txt or .leaves file"), std::string::npos);
   EXPECT_NE(refusal(file("w.obj", kSquare + "g bark\nf 1 2 3 4\n")).find("has only wood and no leaf (group \"bark\")"),
             std::string::npos);

@@ -36,7 +36,7 @@ class Isolated : public ::testing::Test {
   }
   std::string refused(const std::string& why) const { return file.string() + ": " + why; }
 
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path file = folder / "a.vdb";
 };
 

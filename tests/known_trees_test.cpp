@@ -1,7 +1,6 @@
 // Check trees of other programs, where they lie beside the repository: leaves, leaf triangles and wood triangles as
 // their makers made them, and the leaves' area as it was measured before. Without them, trees of ours stand in.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "plants/write_obj.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -29,12 +29,10 @@ struct Known {
 }  // namespace
 
 TEST(KnownTrees, AreReadAsTheirMakersMadeThem) {
-  const fs::path own = fs::temp_directory_path() / ("sunfleck_known_" + std::to_string(::getpid()));
-  fs::create_directories(own);
+  const TemporaryFolder own;
   const TreeMesh maple = grow(species("maple"), 1);
   writeObj(own / "own.obj", maple);
   const TreeMesh read = importTree(own / "own.obj").mesh;
-  fs::remove_all(own);
   EXPECT_EQ(read.leaf_count, maple.leaf_count);
   EXPECT_EQ(leafArea(read), leafArea(maple));
 

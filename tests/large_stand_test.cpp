@@ -430,3 +430,35 @@ TEST(LargeStand, RefusesWhatDoesNotFit) {
   lighting.ground_albedo.y = 0.f;
   EXPECT_EQ(large.solve(lighting, all).trees.size(), all.size());
 }
+
+// Check that the pictures of turned kinds are foreseen, before work begins, within the fifth by which crowns may differ
+// from the ellipsoids that they are taken for, and that a stand turned in too many ways is refused with that reason.
+TEST(LargeStand, ForeseesThePicturesOfTurnedKinds) {
+  Woods woods(6);
+  const FieldLighting lighting = sunlit(2);
+  for (std::size_t i = 0; i < woods.stand.trees.size(); ++i)
+    woods.stand.trees[i].rotation = 0.1f * static_cast<float>(i);
+  double leaf_area = 0., leaves = 0.;
+  for (const auto& mesh : woods.kinds) {
+    leaf_area += leafArea(*mesh);
+    leaves += static_cast<double>(mesh->leaf_count);
+  }
+  const SunLines lines = sunLines(lighting.suns[0].along, leaf_area / leaves / 128., std::nullopt);
+  double bytes = 0.;
+  for (const Placement& tree : woods.stand.trees) {
+    const TreeMesh& mesh = *woods.kinds[tree.kind];
+    const TreePicture picture = treePicture(mesh, fieldElements(mesh), tree.rotation, lines);
+    bytes += 8. * static_cast<double>(picture.side.size());
+  }
+  LargeStandField refusing(LargeStandEffort{.most_memory = 0.5 * bytes});
+  refusing.setStand(woods.kinds, woods.stand);
+  try {
+    refusing.solve(lighting, {});
+    FAIL() << "not refused";
+  } catch (const InvalidInput& refused) {
+    EXPECT_NE(std::string(refused.what()).find("fewer rotations of trees that differ"), std::string::npos)
+        << refused.what();
+  }
+  EXPECT_EQ(refusing.costs()[0].made, 0u);  // no kind: the pictures are all that is foreseen
+  EXPECT_NEAR(refusing.stats().memory, bytes, 0.2 * bytes);
+}

@@ -1,15 +1,14 @@
 // Check lists of leaves, a line `radius x y z nx ny nz` for each.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <glm/geometric.hpp>
 #include <numbers>
 
 #include "core/require.hpp"
 #include "plants/import.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -18,23 +17,17 @@ namespace {
 
 class LeafList : public testing::Test {
  protected:
-  LeafList() { fs::create_directories(folder_); }
-  ~LeafList() override { fs::remove_all(folder_); }
-
-  fs::path file(const std::string& content) const {
-    std::ofstream(folder_ / "t.txt", std::ios::binary) << content;
-    return folder_ / "t.txt";
-  }
+  fs::path file(const std::string& content) const { return folder_.write("t.txt", content); }
   std::string refusal(const std::string& content, const ImportRules& rules = {}) const {
     try {
       importTree(file(content), rules);
     } catch (const InvalidInput& e) {
-      return std::string(e.what()).substr(folder_.string().size() + 1);
+      return folder_.without(e.what());
     }
     return "";
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_leaf_list_" + std::to_string(::getpid()));
+  TemporaryFolder folder_;
 };
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "core/leaf_mask.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "render/reference/camera_trace.hpp"
 #include "render/reference/forward_trace.hpp"
 #include "tests/leaf_shapes.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 using namespace sunfleck::shapes;
@@ -60,9 +60,6 @@ Cards cards() {
 
 class MaskedObj : public testing::Test {
  protected:
-  MaskedObj() { fs::create_directories(folder_); }
-  ~MaskedObj() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& faces, const std::string& material) const {
     std::ofstream(folder_ / "t.mtl") << material;
     std::ofstream(folder_ / "t.obj") << "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -79,7 +76,7 @@ class MaskedObj : public testing::Test {
     return "accepted";
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_masks_" + std::to_string(::getpid()));
+  TemporaryFolder folder_;
 };
 
 const std::string kFace = "usemtl leaf\nf 1/1 2/2 3/3 4/4\n";

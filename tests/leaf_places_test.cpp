@@ -1,11 +1,9 @@
 // Check that leaves know where they lie in their images: as they are grown, as files bring them and as they are
 // written.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <string>
@@ -16,6 +14,7 @@
 #include "plants/write_gltf.hpp"
 #include "plants/write_obj.hpp"
 #include "plants/write_ply.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -24,16 +23,12 @@ namespace {
 
 class LeafPlaces : public testing::Test {
  protected:
-  LeafPlaces() { fs::create_directories(folder_); }
-  ~LeafPlaces() override { fs::remove_all(folder_); }
-
   TreeMesh read(const std::string& name, const std::string& content) const {
     std::ofstream(folder_ / name, std::ios::binary) << content;
     return importTree(folder_ / name).mesh;
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("sunfleck_leaf_places_" + std::to_string(::getpid()) + "_" +
-                                                        testing::UnitTest::GetInstance()->current_test_info()->name());
+  TemporaryFolder folder_;
 };
 
 double twiceArea(const ImageCorners& c) {

@@ -1,15 +1,14 @@
 #include "render/scene_file.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "core/require.hpp"
 #include "render/image_file.hpp"
 #include "render/stand_geometry.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace {
 
@@ -19,28 +18,20 @@ namespace fs = std::filesystem;
 // A folder of its own for each test, removed afterwards.
 class SceneFile : public testing::Test {
  protected:
-  SceneFile() { fs::create_directory(folder_); }
-  ~SceneFile() override { fs::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
+    return folder_.write(name, text).string();
   }
   // The message of the refusal, without the folder's name.
   std::string refusal(const std::string& toml) const {
     try {
       readScene(write("s.toml", toml));
     } catch (const InvalidInput& e) {
-      std::string message = e.what();
-      const std::size_t at = message.find(folder_.string());
-      if (at != std::string::npos) message.erase(at, folder_.string().size() + 1);
-      return message;
+      return folder_.without(e.what());
     }
     return "accepted";
   }
 
- private:
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_scene_file_" + std::to_string(::getpid()));
+  TemporaryFolder folder_;
 };
 
 constexpr const char* kSquare = "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\nusemtl leaf\nf 1 2 3 4\n";

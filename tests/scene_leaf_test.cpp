@@ -1,6 +1,5 @@
 // Leaves of scenes and sweeps that are told by what they are.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "render/scene_file.hpp"
 #include "render/scene_writer.hpp"
 #include "render/sweep_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace sunfleck {
 namespace {
@@ -25,15 +25,10 @@ namespace fs = std::filesystem;
 // A folder of its own for each test, with a tree of one leaf, removed afterwards.
 class SceneLeaf : public testing::Test {
  protected:
-  SceneLeaf() {
-    fs::create_directory(folder_);
-    write("tree.obj", "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\nusemtl leaf\nf 1 2 3 4\n");
-  }
-  ~SceneLeaf() override { fs::remove_all(folder_); }
+  SceneLeaf() { write("tree.obj", "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\nusemtl leaf\nf 1 2 3 4\n"); }
 
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
+    return folder_.write(name, text).string();
   }
   std::string refusal(const std::string& toml) const {
     try {
@@ -44,7 +39,7 @@ class SceneLeaf : public testing::Test {
     return "accepted";
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_scene_leaf_" + std::to_string(::getpid()));
+  TemporaryFolder folder_;
 };
 
 // Check that species and contents reach the leaves of every kind of tree and of a medium, that a tree has the scene's
@@ -161,7 +156,7 @@ positions = [[0, 0], [3, 0], [6, 0], [9, 0], [12, 0], [15, 0]]
 )"));
     EXPECT_TRUE(std::holds_alternative<LeafByNumbers>(scene.kinds[5].description));
     EXPECT_EQ(scene.kinds[0].description, scene.media[1].description);
-    const std::string text = sceneText(scene, folder_);
+    const std::string text = sceneText(scene, folder_.path());
     for (const char* line :
          {"leaf_slab = { absorption = [2, 0.3, 4], scattering = 10.1, thickness = 0.123456789012345 }",
           "leaf_species = \"beech\"\nleaf_gloss", "leaf_prospect = {}\n",
@@ -186,7 +181,7 @@ positions = [[0, 0], [3, 0], [6, 0], [9, 0], [12, 0], [15, 0]]
   const Scene alone = readScene(write("s.toml",
                                       "[leaf]\nspecies = \"beech\"\nbands_nm = [650, 550, 450]\n[medium]\ndensity = "
                                       "1.0\nbottom = 0\ntop = 1\n[stand]\nkind = \"periodic\"\nperiod = [1, 1]\n"));
-  const Scene again = readScene(write("again.toml", sceneText(alone, folder_)));
+  const Scene again = readScene(write("again.toml", sceneText(alone, folder_.path())));
   EXPECT_EQ(again.bands, alone.bands);
   EXPECT_EQ(again.kinds[0].description, LeafDescription(leafOfSpecies("beech")));
   EXPECT_EQ(again.media[0].description, alone.media[0].description);
@@ -249,7 +244,7 @@ void writeTextures(const fs::path& folder) {
 // Check that images and a lower side reach every kind as told, that the leaf is their mean, and that a scene written
 // and read again has the same.
 TEST_F(SceneLeaf, HasMapsAndALowerSide) {
-  writeTextures(folder_);
+  writeTextures(folder_.path());
   const Scene scene = readScene(write("s.toml", R"(
 [leaf]
 slab = { absorption = [2.0, 0.5, 4.0], scattering = 10.0, thickness = 0.2 }
@@ -294,7 +289,7 @@ positions = [[0, 0], [3, 0], [6, 0], [9, 0]]
   ASSERT_TRUE(scene.kinds[3].maps);
   EXPECT_EQ(scene.kinds[3].maps->places.size(), 1u);
   EXPECT_NEAR(scene.kinds[3].leaf[0].reflectance, 0.4f, 1e-6f);
-  const Scene again = readScene(write("again.toml", sceneText(scene, folder_)));
+  const Scene again = readScene(write("again.toml", sceneText(scene, folder_.path())));
   for (std::size_t kind = 0; kind < 4; ++kind) {
     EXPECT_EQ(again.kinds[kind].leaf, scene.kinds[kind].leaf) << kind;
     EXPECT_EQ(again.kinds[kind].told(), scene.kinds[kind].told()) << kind;
@@ -314,12 +309,12 @@ positions = [[0, 0], [3, 0], [6, 0], [9, 0]]
   auto made = std::make_shared<LeafTexture>(texture);
   made->file.clear();
   unsaved.kinds[0].textures.upper.detail = made;
-  EXPECT_THROW(sceneText(unsaved, folder_), InvalidInput);
+  EXPECT_THROW(sceneText(unsaved, folder_.path()), InvalidInput);
 }
 
 // Check that images that are none, or are made to do harm, are told in one line.
 TEST_F(SceneLeaf, RefusesBadMaps) {
-  writeTextures(folder_);
+  writeTextures(folder_.path());
   const auto refuses = [&](const std::string& keys, const std::string& expected) {
     const std::string message = refusal("[tree]\nfile = \"tree.obj\"\n[leaf]\n" + keys + "\n");
     EXPECT_NE(message.find(expected), std::string::npos) << message;

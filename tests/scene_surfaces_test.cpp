@@ -1,15 +1,14 @@
 // Check that a scene file brings gloss, grounds and masks, from files that it names; that it refuses what is wrong with
 // them in one line; and that the models refuse such scenes.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "core/require.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_file.hpp"
 #include "render/stand_geometry.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace {
 
@@ -19,16 +18,13 @@ namespace fs = std::filesystem;
 class SceneSurfaces : public testing::Test {
  protected:
   SceneSurfaces() {
-    fs::create_directory(folder_);
     write("tree.obj",
           "mtllib tree.mtl\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
           "usemtl leaf\nf 1/1 2/2 3/3 4/4\n");
   }
-  ~SceneSurfaces() override { fs::remove_all(folder_); }
 
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
+    return folder_.write(name, text).string();
   }
   Scene read(const std::string& toml) const {
     return readScene(write("s.toml", "[tree]\nfile = \"tree.obj\"\n" + toml));
@@ -40,14 +36,12 @@ class SceneSurfaces : public testing::Test {
     } catch (const InvalidInput& e) {
       std::string message = e.what();
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-      for (std::size_t at; (at = message.find(folder_.string() + "/")) != std::string::npos;)
-        message.erase(at, folder_.string().size() + 1);
-      return message;
+      return folder_.without(message);
     }
     return "accepted";
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_scene_surfaces_" + std::to_string(::getpid()));
+  TemporaryFolder folder_;
 };
 
 }  // namespace

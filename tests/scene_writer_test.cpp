@@ -1,16 +1,15 @@
 #include "render/scene_writer.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "core/random.hpp"
 #include "core/require.hpp"
 #include "render/image_file.hpp"
 #include "render/scene_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -23,12 +22,8 @@ class SceneWriter : public testing::Test {
     fs::create_directories(folder_ / "elsewhere");
     write("square.obj", "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\nusemtl leaf\nf 1 2 3 4\nusemtl bark\nf 1 2 3\n");
   }
-  ~SceneWriter() override { fs::remove_all(folder_); }
 
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
+  fs::path write(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
   Scene read(const std::string& toml) const { return readScene(write("given.toml", toml).string()); }
   // Written to another folder than that of what it names, and read from there.
   Scene roundTrip(const Scene& scene) const {
@@ -37,7 +32,7 @@ class SceneWriter : public testing::Test {
     return readScene(file.string());
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("sunfleck_scene_writer_" + std::to_string(::getpid()));
+  TemporaryFolder folder_;
 };
 
 void expectSameMesh(const TreeMesh& a, const TreeMesh& b) {
@@ -201,8 +196,8 @@ Scene drawnScene(std::uint64_t seed, const fs::path& folder) {
 // Check that 50 random scenes of all that a file can tell are read back the same, to the bit of each number.
 TEST_F(SceneWriter, WhatItWritesIsReadBackTheSame) {
   for (std::uint64_t seed = 1; seed <= 50 && !HasFailure(); ++seed) {
-    const Scene scene = drawnScene(seed, folder_);
-    SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + sceneText(scene, folder_));
+    const Scene scene = drawnScene(seed, folder_.path());
+    SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + sceneText(scene, folder_.path()));
     expectSame(scene, roundTrip(scene));
   }
 }
@@ -275,7 +270,7 @@ TEST_F(SceneWriter, RefusesWhatAFileCannotTell) {
   for (const char* name : {"cherry", "periodic", "cherry16"}) expectSame(readScene(name), roundTrip(readScene(name)));
   const auto refusal = [&](const Scene& scene) {
     try {
-      sceneText(scene, folder_);
+      sceneText(scene, folder_.path());
     } catch (const InvalidInput& e) {
       return std::string(e.what());
     }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "pp_solver/detail/table_axis.hpp"
 #include "pp_solver/slab_table_file.hpp"
 #include "pp_solver/solver.hpp"
+#include "tests/temporary_folder.hpp"
 
 // Tables of slabs against the solver that made them, and their files against damage.
 namespace {
@@ -50,14 +50,6 @@ const SlabTable& leafTable() {
       *SlabTable::build(leaves(), {.max_thickness = 6., .max_error = 0.3, .streams = 16, .note = "planophile"});
   return table;
 }
-
-// A folder that is gone after the test.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("slab_table_test." + std::to_string(getpid()));
-  Folder() { fs::create_directory(path); }
-  ~Folder() { fs::remove_all(path); }
-  fs::path operator/(const char* name) const { return path / name; }
-};
 
 std::string bytesOf(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -225,7 +217,7 @@ TEST(P12_SlabTable, IsSafeForAnyInput) {
 
 // Check that a file gives back the same bits, that threads do not change them, and what it tells of itself.
 TEST(P12_SlabTableFile, GivesBackTheSameBits) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const SlabTable* table : {&particleTable(), &leafTable()}) {
     writeSlabTable(folder / "a.sft", *table);
     const SlabTable back = readSlabTable(folder / "a.sft");
@@ -249,7 +241,7 @@ TEST(P12_SlabTableFile, GivesBackTheSameBits) {
 
 // Check that no damaged file is read: bytes changed, cut off, added, each in one line with the file's name.
 TEST(P12_SlabTableFile, RefusesDamage) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path path = folder / "table.sft";
   writeSlabTable(path, particleTable());
   const std::string whole = bytesOf(path);
@@ -280,12 +272,12 @@ TEST(P12_SlabTableFile, RefusesDamage) {
   flipped[whole.size() / 2] ^= 1;
   EXPECT_NE(refused(flipped).find("checksum"), std::string::npos);
   EXPECT_NE(refusal([&] { (void)readSlabTable(folder / "none.sft"); }).find("none.sft"), std::string::npos);
-  EXPECT_NE(refusal([&] { (void)readSlabTable(folder.path); }).find("no regular file"), std::string::npos);
+  EXPECT_NE(refusal([&] { (void)readSlabTable(folder.path()); }).find("no regular file"), std::string::npos);
 }
 
 // Check that a file whose checksum is right but whose contents are not is refused too, naming what is wrong.
 TEST(P12_SlabTableFile, RefusesWrongContents) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const fs::path path = folder / "table.sft";
   writeSlabTable(path, particleTable());
   const std::string whole = bytesOf(path);

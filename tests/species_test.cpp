@@ -1,13 +1,13 @@
 #include "plants/species.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "core/require.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -16,9 +16,6 @@ namespace {
 
 class SpeciesFile : public testing::Test {
  protected:
-  SpeciesFile() : file_(fs::temp_directory_path() / ("sunfleck_species_" + std::to_string(::getpid()) + ".toml")) {}
-  ~SpeciesFile() override { fs::remove(file_); }
-
   WeberPenn read(const std::string& text) const {
     std::ofstream(file_, std::ios::binary) << text;
     return readSpecies(file_);
@@ -37,7 +34,8 @@ class SpeciesFile : public testing::Test {
     return "";
   }
 
-  fs::path file_;
+  TemporaryFolder folder_;
+  fs::path file_ = folder_ / "tree.toml";
 };
 
 }  // namespace

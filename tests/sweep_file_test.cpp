@@ -3,26 +3,17 @@
 #include "render/sweep_file.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 
 #include "core/require.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 
 namespace {
 
 SweepFile sweepOf(const std::string& text) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("sunfleck_sweep_" + std::to_string(getpid()) + ".toml");
-  std::ofstream(file) << text;
-  struct Remove {
-    const std::filesystem::path& file;
-    ~Remove() { std::filesystem::remove(file); }
-  } remove{file};
-  return readSweepFile(file);
+  const TemporaryFolder folder;
+  return readSweepFile(folder.write("sweep.toml", text));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "render/reference/trace_run.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -18,22 +17,13 @@
 #include "render/reference/forward_trace.hpp"
 #include "render/reference/trace_goal.hpp"
 #include "tests/leaf_shapes.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 using namespace sunfleck::shapes;
 namespace fs = std::filesystem;
 
 namespace {
-
-class Folder {
- public:
-  Folder() { fs::create_directories(path_); }
-  ~Folder() { fs::remove_all(path_); }
-  fs::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  fs::path path_ = fs::temp_directory_path() / ("sunfleck_trace_run_test_" + std::to_string(getpid()));
-};
 
 // A scene with light of three bands.
 struct Example {
@@ -214,7 +204,7 @@ TEST(R1_TraceRun, OrdersGiveOtherLeavesWithoutANewRun) {
 // Check that a run stopped again and again, each time going on from its file, comes to the file of a run never stopped,
 // also where what it computes next rests on what it has found.
 TEST(R1_TraceRun, GoesOnFromItsFileToTheSameBits) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Example example;
   const auto goal = [&](const TraceJob& job) {
     if (&job == &example.camera)
@@ -251,7 +241,7 @@ TEST(R1_TraceRun, GoesOnFromItsFileToTheSameBits) {
 // Check that parts and runs of other seeds are put together, and that what must not be is refused with a line that says
 // why.
 TEST(R1_TraceRun, PutsPartsTogether) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Example example;
   const auto part = [&](const char* name, std::uint64_t seed, UnitRanges units, const TraceJob& job) {
     TraceStore store(folder / name, 1e9, {{"scene", "example"}});
@@ -314,7 +304,7 @@ TEST(R1_TraceRun, FillsHolesTowardsAnError) {
 // Check that a file with any byte changed or cut off is refused, that a foreign one is, and that a file is one
 // process's alone.
 TEST(R1_TraceRun, RefusesWhatIsNotItsFile) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Example example;
   const fs::path file = folder / "run.trace";
   {

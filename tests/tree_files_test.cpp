@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include "plants/write_gltf.hpp"
 #include "plants/write_obj.hpp"
 #include "plants/write_ply.hpp"
+#include "tests/temporary_folder.hpp"
 
 using namespace sunfleck;
 namespace fs = std::filesystem;
@@ -24,17 +24,7 @@ namespace {
 
 class TreeFiles : public testing::Test {
  protected:
-  TreeFiles() {
-    folder_ = fs::temp_directory_path() / ("sunfleck_tree_files_" + std::to_string(::getpid()) + "_" +
-                                           testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  ~TreeFiles() override { fs::remove_all(folder_); }
-
-  fs::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-    return folder_ / name;
-  }
+  fs::path file(const std::string& name, const std::string& content) const { return folder_.write(name, content); }
 
   std::string contentOf(const fs::path& path) const {
     std::ifstream in(path, std::ios::binary);
@@ -55,7 +45,7 @@ class TreeFiles : public testing::Test {
     return "";
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 bool same(const TreeMesh& a, const TreeMesh& b) {

@@ -16,6 +16,8 @@ namespace detail {
 
 inline constexpr double kLargeStandLight = 0.5e9;  // that light at trees' walls may take at once [byte]
 
+inline constexpr double kBytesOfPixel = sizeof(float) + sizeof(std::uint32_t);  // of a TreePicture
+
 // Steps whose times are told.
 enum LargeStandCost : std::size_t { kKinds, kCells, kSun, kCellSolution, kWalls, kTrees };
 

@@ -1,38 +1,19 @@
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "field/detail/lanes.hpp"
 #include "field/field_solver.hpp"
 
 namespace sunfleck::detail {
 
-constexpr std::size_t kLanes = 4;  // problems solved side by side
-typedef float Lanes __attribute__((vector_size(4 * kLanes)));
-
-constexpr std::size_t kBlock = 512;  // elements that are worth a task, and whose sums are rounded together
-
-// Calls work(block, begin, end) for blocks of `count` elements, in parallel.
-template <typename Work>
-void overBlocks(std::size_t count, const Work& work) {
-  const std::size_t blocks = (count + kBlock - 1) / kBlock;
-  tbb::parallel_for(std::size_t{0}, blocks,
-                    [&](std::size_t block) { work(block, block * kBlock, std::min(count, (block + 1) * kBlock)); });
-}
-
 // What lines return anyway is taken back up to this share: of elements that few lines cross nearly all light goes on by
 // the line that it came by, and a matrix without that would hold light longer than there is any.
 constexpr float kMostReturn = 1.f / 16.f;
-
-// What one kind of element does to light, in each problem [1].
-struct KindOptics {
-  Lanes reflectance{}, transmittance{};
-};
 
 // How light goes back where it came from at each side. Of the light that comes to an element along a line, `back` of
 // what it reflects returns along that line, more than of what comes along others. Solving that for the two ends of a
