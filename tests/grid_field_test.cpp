@@ -268,8 +268,10 @@ TEST(F19_Clumping, TellsPairsFromSingleLeaves) {
   EXPECT_LE(of_single, 1.f);
   const auto vertices = mesh.vertices.size(), triangles = mesh.leaf_triangles.size();
   for (std::size_t i = 0; i < vertices; ++i) mesh.vertices.push_back(mesh.vertices[i] + glm::vec3(1e-4f));
-  for (std::size_t i = 0; i < triangles; ++i)
+  for (std::size_t i = 0; i < triangles; ++i) {
     mesh.leaf_triangles.push_back(mesh.leaf_triangles[i] + glm::uvec3(static_cast<std::uint32_t>(vertices)));
+    mesh.patch_of_triangle.push_back(mesh.patch_of_triangle[i]);
+  }
   finish(mesh, "pairs");
   const FieldElements pairs = fieldElements(mesh);
   // A pair shifted by 1e-4 of 3e-2 is seen apart by 1 % of the lines that meet it; deeper stretches shift the balance

@@ -101,7 +101,7 @@ TEST_F(HostileFiles, ImagesThatAreMissingOrBurst) {
   EXPECT_NE(outcome(card).find("leaf.png: cannot be read: "), std::string::npos);
   fs::remove(folder_ / "leaf.png");
   fs::create_directory(folder_ / "leaf.png");
-  EXPECT_EQ(outcome(card), "leaf.png: cannot be read: there is no such file");
+  EXPECT_EQ(outcome(card), "leaf.png: cannot be read: it is no regular file");
 }
 
 TEST_F(HostileFiles, GltfThatWouldFillTheMemory) {
