@@ -42,6 +42,7 @@ TreeMesh crown(float leaf_side, std::uint64_t seed) {
   for (const glm::vec3& corner : {glm::vec3(0.f), glm::vec3(1e-3f, 0.f, 0.f), glm::vec3(0.f, 1e-3f, 0.f)})
     mesh.vertices.push_back(corner);
   mesh.leaf_triangles.push_back({first, first + 1, first + 2});
+  mesh.patch_of_triangle.push_back(TreeMesh::kNoPatch);
   finish(mesh, "crown");
   return mesh;
 }
