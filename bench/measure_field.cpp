@@ -86,6 +86,8 @@ void split(TreeMesh& mesh) {
   }
   mesh.leaf_triangles = triangles;
   mesh.leaf_of_triangle = leaves;
+  mesh.patches.clear();  // the field has no use for places in images
+  mesh.patch_of_triangle.clear();
 }
 
 struct Band {
